@@ -1,0 +1,344 @@
+#include "core/accel/accel.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstring>
+
+#include "core/accel/embree.h"
+
+namespace whit {
+namespace {
+
+constexpr int kWidth = 16;
+
+/// What Embree hands back to us with a user geometry or a filter call.
+struct GeometryUser {
+  const AnalyticShape* analytic = nullptr;
+  const AlphaTest* alpha = nullptr;
+};
+
+void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& shape = *static_cast<const GeometryUser*>(args->geometryUserPtr)->analytic;
+  const Box3d object = shape.object_bounds();
+  Box3d box;
+  for (int c = 0; c < 8; ++c) {
+    box.extendBy(transform_point(shape.object_to_scene(),
+                                 {c & 1 ? object.max.x : object.min.x, c & 2 ? object.max.y : object.min.y,
+                                  c & 4 ? object.max.z : object.min.z}));
+  }
+  // Rounded outward: a float box must hold the double surface.
+  const auto down = [](double v) { return std::nextafterf(static_cast<float>(v), -INFINITY); };
+  const auto up = [](double v) { return std::nextafterf(static_cast<float>(v), INFINITY); };
+  *args->bounds_o = {down(box.min.x), down(box.min.y), down(box.min.z), 0,
+                     up(box.max.x),   up(box.max.y),   up(box.max.z),   0};
+}
+
+/// The valid rays of an Embree packet in an analytic shape's object space.
+struct ObjectPacket {
+  int n = 0;
+  int lane[kWidth];
+  double ox[kWidth], oy[kWidth], oz[kWidth], dx[kWidth], dy[kWidth], dz[kWidth], t_min[kWidth], t[kWidth];
+
+  ObjectPacket(RTCRayN* rays, const int* valid, unsigned width, const AnalyticShape& shape) {
+    const Mat4d& m = shape.scene_to_object();
+    for (unsigned i = 0; i < width; ++i) {
+      if (!valid[i]) continue;
+      const Vec3d o = transform_point(
+          m, {RTCRayN_org_x(rays, width, i), RTCRayN_org_y(rays, width, i), RTCRayN_org_z(rays, width, i)});
+      const Vec3d d = transform_vector(
+          m, {RTCRayN_dir_x(rays, width, i), RTCRayN_dir_y(rays, width, i), RTCRayN_dir_z(rays, width, i)});
+      ox[n] = o.x, oy[n] = o.y, oz[n] = o.z, dx[n] = d.x, dy[n] = d.y, dz[n] = d.z;
+      t_min[n] = RTCRayN_tnear(rays, width, i);
+      t[n] = RTCRayN_tfar(rays, width, i);
+      lane[n++] = static_cast<int>(i);
+    }
+  }
+  void intersect(const AnalyticShape& shape) {
+    shape.intersect({n, ox, oy, oz, dx, dy, dz, t_min, t});
+  }
+};
+
+/// Finds each lane's nearest hit that the alpha test leaves standing, and hands it to accept(lane, t).
+template <class Accept>
+void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
+                    const Accept& accept) {
+  ObjectPacket packet(rays, valid, width, *user.analytic);
+  double t_far[kWidth];
+  std::memcpy(t_far, packet.t, sizeof(double) * static_cast<size_t>(packet.n));
+  // A cut-out point sends its ray on to the next root of the quadric, of which there are at most two.
+  for (int round = 0; round < 3 && packet.n > 0; ++round) {
+    packet.intersect(*user.analytic);
+    int left = 0;
+    for (int k = 0; k < packet.n; ++k) {
+      if (!(packet.t[k] < t_far[k])) continue;
+      const int i = packet.lane[k];
+      bool cut = false;
+      if (user.alpha) {
+        const Vec3d p = transform_point(user.analytic->object_to_scene(),
+                                        Vec3d(packet.ox[k], packet.oy[k], packet.oz[k]) +
+                                            packet.t[k] * Vec3d(packet.dx[k], packet.dy[k], packet.dz[k]));
+        cut = user.alpha->cut(0, 0, 0, Vec3f(p), shadow);
+      }
+      if (!cut) {
+        accept(static_cast<unsigned>(i), packet.t[k]);
+        continue;
+      }
+      packet.ox[left] = packet.ox[k], packet.oy[left] = packet.oy[k], packet.oz[left] = packet.oz[k];
+      packet.dx[left] = packet.dx[k], packet.dy[left] = packet.dy[k], packet.dz[left] = packet.dz[k];
+      packet.t_min[left] = std::nextafter(packet.t[k], t_far[k]);
+      packet.t[left] = t_far[left] = t_far[k];
+      packet.lane[left++] = i;
+    }
+    packet.n = left;
+  }
+}
+
+void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const unsigned width = args->N;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
+  trace_analytic(user, rays, args->valid, width, false, [&](unsigned i, double t) {
+    RTCRayN_tfar(rays, width, i) = static_cast<float>(t);
+    RTCHitN_u(hits, width, i) = RTCHitN_v(hits, width, i) = 0;
+    RTCHitN_primID(hits, width, i) = args->primID;
+    RTCHitN_geomID(hits, width, i) = args->geomID;
+    RTCHitN_instID(hits, width, i, 0) = args->context->instID[0];
+  });
+}
+
+void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  trace_analytic(user, args->ray, args->valid, args->N, true, [&](unsigned i, double) {
+    RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+  });
+}
+
+template <bool kShadow>
+void alpha_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const unsigned width = args->N;
+  for (unsigned i = 0; i < width; ++i) {
+    if (!args->valid[i]) continue;
+    const float t = RTCRayN_tfar(args->ray, width, i);
+    const Vec3f p = Vec3f(RTCRayN_org_x(args->ray, width, i), RTCRayN_org_y(args->ray, width, i),
+                          RTCRayN_org_z(args->ray, width, i)) +
+                    t * Vec3f(RTCRayN_dir_x(args->ray, width, i), RTCRayN_dir_y(args->ray, width, i),
+                              RTCRayN_dir_z(args->ray, width, i));
+    if (user.alpha->cut(RTCHitN_primID(args->hit, width, i), RTCHitN_u(args->hit, width, i),
+                        RTCHitN_v(args->hit, width, i), p, kShadow)) {
+      args->valid[i] = 0;
+    }
+  }
+}
+
+/// Fills one packet from lanes [first, first + count); lanes beyond count are switched off by `valid`.
+template <class Packet>
+void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* valid) {
+  const auto copy = [&](float* to, const float* from) {
+    std::memcpy(to, from + first, sizeof(float) * static_cast<size_t>(count));
+  };
+  copy(ray.org_x, rays.o.x), copy(ray.org_y, rays.o.y), copy(ray.org_z, rays.o.z);
+  copy(ray.dir_x, rays.d.x), copy(ray.dir_y, rays.d.y), copy(ray.dir_z, rays.d.z);
+  for (int i = 0; i < kWidth; ++i) {
+    ray.tnear[i] = 0;
+    ray.time[i] = 0;
+    ray.tfar[i] = std::numeric_limits<float>::infinity();
+    ray.mask[i] = 0xffffffffu;
+    ray.flags[i] = 0;
+    valid[i] = i < count ? -1 : 0;
+  }
+  if (rays.t_max) copy(ray.tfar, rays.t_max);
+  if (rays.time) copy(ray.time, rays.time);
+}
+
+}  // namespace
+
+struct Accel::Impl {
+  RTCDevice device = nullptr;
+  bool robust = true;
+  struct Group {
+    RTCScene scene = nullptr;
+    int first_shape = 0;  ///< Shape index of geometry 0: a group's shapes are numbered without gaps.
+    int shape_count = 0;
+  };
+  std::vector<Group> groups;
+  std::vector<int32_t> instance_group;
+  std::vector<std::unique_ptr<GeometryUser>> users;
+  std::atomic<ssize_t> bytes{0};
+  std::string error;
+
+  Group& group(int g) { return groups[static_cast<size_t>(g)]; }
+  RTCScene new_scene() const {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    return scene;
+  }
+  GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha) {
+    users.push_back(std::make_unique<GeometryUser>(GeometryUser{shape, alpha}));
+    return users.back().get();
+  }
+  void set_alpha(RTCGeometry geometry, const AlphaTest* alpha) {
+    if (!alpha) return;
+    rtcSetGeometryUserData(geometry, new_user(nullptr, alpha));
+    rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter<false>);
+    rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter<true>);
+  }
+  /// Attaches with the geometry number that makes shape = first_shape + number.
+  void attach(int g, RTCGeometry geometry, int shape) {
+    Group& to = group(g);
+    if (to.shape_count == 0) to.first_shape = shape;
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(to.scene, geometry, static_cast<unsigned>(shape - to.first_shape));
+    rtcReleaseGeometry(geometry);
+    to.shape_count = std::max(to.shape_count, shape - to.first_shape + 1);
+  }
+};
+
+Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
+  impl_->robust = options.robust;
+  impl_->device = rtcNewDevice(nullptr);
+  rtcSetDeviceErrorFunction(
+      impl_->device,
+      [](void* self, RTCError, const char* text) { static_cast<Impl*>(self)->error = text ? text : "unknown"; },
+      impl_.get());
+  rtcSetDeviceMemoryMonitorFunction(
+      impl_->device,
+      [](void* self, ssize_t change, bool) {
+        static_cast<Impl*>(self)->bytes += change;
+        return true;
+      },
+      impl_.get());
+  add_group();
+}
+
+Accel::~Accel() {
+  for (auto& g : impl_->groups) rtcReleaseScene(g.scene);
+  rtcReleaseDevice(impl_->device);
+}
+
+int Accel::add_group() {
+  impl_->groups.push_back({impl_->new_scene(), 0, 0});
+  return static_cast<int>(impl_->groups.size()) - 1;
+}
+
+void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha) {
+  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions, 0,
+                             3 * sizeof(float), mesh.vertex_count);
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0,
+                             3 * sizeof(uint32_t), mesh.triangle_count);
+  impl_->set_alpha(g, alpha);
+  impl_->attach(group, g, shape);
+}
+
+void Accel::add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha) {
+  RTCGeometry g = rtcNewGeometry(impl_->device, curves.ribbon ? RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE
+                                                              : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE);
+  const size_t points = 4 * curves.segment_count;
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points, 0,
+                             4 * sizeof(float), points);
+  if (curves.ribbon) {
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, curves.normals, 0,
+                               3 * sizeof(float), points);
+  }
+  auto* index = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
+                                                               sizeof(uint32_t), curves.segment_count));
+  for (size_t i = 0; i < curves.segment_count; ++i) index[i] = static_cast<uint32_t>(4 * i);
+  impl_->set_alpha(g, alpha);
+  impl_->attach(group, g, shape);
+}
+
+void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, const AlphaTest* alpha) {
+  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, 1);
+  rtcSetGeometryUserData(g, impl_->new_user(&geometry, alpha));
+  rtcSetGeometryBoundsFunction(g, analytic_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, analytic_intersect);
+  rtcSetGeometryOccludedFunction(g, analytic_occluded);
+  impl_->attach(group, g, shape);
+}
+
+int Accel::add_instance(int group, const std::vector<Affine>& keys) {
+  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_INSTANCE);
+  rtcSetGeometryInstancedScene(g, impl_->group(group).scene);
+  rtcSetGeometryTimeStepCount(g, static_cast<unsigned>(keys.size()));
+  for (size_t k = 0; k < keys.size(); ++k) {
+    rtcSetGeometryTransform(g, static_cast<unsigned>(k), RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, keys[k].m);
+  }
+  rtcCommitGeometry(g);
+  // Instances are numbered after the world's own shapes, which are all there when the first instance comes.
+  const int index = static_cast<int>(impl_->instance_group.size());
+  rtcAttachGeometryByID(impl_->group(kWorld).scene, g,
+                        static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
+  rtcReleaseGeometry(g);
+  impl_->instance_group.push_back(group);
+  return index;
+}
+
+std::string Accel::build() {
+  for (size_t g = 1; g < impl_->groups.size(); ++g) rtcCommitScene(impl_->groups[g].scene);
+  rtcCommitScene(impl_->groups[kWorld].scene);
+  const RTCError code = rtcGetDeviceError(impl_->device);
+  if (code == RTC_ERROR_NONE && impl_->error.empty()) return {};
+  return fmt::format("the ray tracer could not be built: {}", impl_->error.empty() ? "unknown error" : impl_->error);
+}
+
+void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+  const RTCScene scene = impl_->groups[kWorld].scene;
+  const int world_first = impl_->groups[kWorld].first_shape;
+  const int world_shapes = impl_->groups[kWorld].shape_count;
+  EmbreeQuery query(coherent);
+  alignas(64) RTCRayHit16 packet;
+  alignas(64) int valid[kWidth];
+  for (int first = 0; first < rays.n; first += kWidth) {
+    const int count = std::min(kWidth, rays.n - first);
+    load_packet(rays, first, count, packet.ray, valid);
+    for (int i = 0; i < kWidth; ++i) {
+      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+    query.intersect16(valid, scene, packet);
+    const size_t bytes = sizeof(float) * static_cast<size_t>(count);
+    std::memcpy(hits.t + first, packet.ray.tfar, bytes);
+    std::memcpy(hits.u + first, packet.hit.u, bytes);
+    std::memcpy(hits.v + first, packet.hit.v, bytes);
+    std::memcpy(hits.prim + first, packet.hit.primID, bytes);
+    for (int i = 0; i < count; ++i) {
+      const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
+      const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
+      const bool instanced = hit && instance != RTC_INVALID_GEOMETRY_ID;
+      hits.instance[first + i] = instanced ? static_cast<int32_t>(instance) - world_shapes : -1;
+      hits.shape[first + i] = hit ? static_cast<int32_t>(geometry) + world_first : -1;
+    }
+  }
+  if (impl_->instance_group.empty()) return;
+  for (int i = 0; i < rays.n; ++i) {
+    if (hits.instance[i] < 0) continue;
+    const int group = impl_->instance_group[static_cast<size_t>(hits.instance[i])];
+    hits.shape[i] += impl_->groups[static_cast<size_t>(group)].first_shape - world_first;
+  }
+}
+
+void Accel::occluded(const RayLanes& rays, uint8_t* blocked, bool coherent) const {
+  const RTCScene scene = impl_->groups[kWorld].scene;
+  EmbreeQuery query(coherent);
+  alignas(64) RTCRay16 packet;
+  alignas(64) int valid[kWidth];
+  for (int first = 0; first < rays.n; first += kWidth) {
+    const int count = std::min(kWidth, rays.n - first);
+    load_packet(rays, first, count, packet, valid);
+    query.occluded16(valid, scene, packet);
+    for (int i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+  }
+}
+
+size_t Accel::bytes() const { return static_cast<size_t>(std::max<ssize_t>(0, impl_->bytes)); }
+
+std::string accel_version() {
+  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+}
+
+}  // namespace whit

@@ -1,0 +1,104 @@
+// The ray tracer: geometry in, nearest hits and occlusion out, in batches. The only door to Embree.
+//
+// Geometry lives in groups. Group 0 is the world, in render space; the others are object definitions, in a
+// local space of their own, placed in the world by instances.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/base/vec.h"
+#include "core/batch/lanes.h"
+#include "core/plugin/shape.h"
+
+namespace whit {
+
+/// n rays, structure of arrays, in render space. Directions are unit vectors.
+struct RayLanes {
+  int n = 0;
+  Vec3Lanes o, d;
+  const float* t_max = nullptr;  ///< Null: infinite.
+  const float* time = nullptr;   ///< In [0,1] over the transform times; null: 0.
+};
+
+/// The nearest hits of n rays.
+struct HitLanes {
+  float* t = nullptr;           ///< Distance.
+  int32_t* shape = nullptr;     ///< Index given to add_*(), -1 for a miss.
+  uint32_t* prim = nullptr;     ///< Triangle or curve segment within the shape.
+  int32_t* instance = nullptr;  ///< Index of the instance, -1 for world geometry.
+  float *u = nullptr, *v = nullptr;  ///< Barycentric weights of vertices 1 and 2; along and across a curve.
+};
+
+/// Decides whether a surface is there at a hit (alpha textures). Called from worker threads.
+class AlphaTest {
+ public:
+  virtual ~AlphaTest() = default;
+  /// True when the surface is cut away at the point. `p` is the hit in the group's space.
+  virtual bool cut(uint32_t prim, float u, float v, const Vec3f& p, bool shadow_ray) const = 0;
+};
+
+/// A triangle mesh in its group's space. Arrays must outlive the Accel; positions are padded by one float.
+struct MeshView {
+  const float* positions = nullptr;  ///< 3 per vertex.
+  size_t vertex_count = 0;
+  const uint32_t* indices = nullptr;  ///< 3 per triangle.
+  size_t triangle_count = 0;
+};
+
+/// Cubic Bezier curves in their group's space, 4 control points (x, y, z, radius) per segment.
+struct CurveView {
+  const float* control_points = nullptr;
+  size_t segment_count = 0;
+  bool ribbon = false;            ///< Turned by normals instead of facing the ray.
+  const float* normals = nullptr; ///< Ribbon: 4 x 3 per segment.
+};
+
+/// Affine 3x4 matrices, column-major as Embree's FLOAT3X4_COLUMN_MAJOR: x axis, y axis, z axis, translation.
+struct Affine {
+  float m[12];
+};
+
+struct AccelOptions {
+  bool robust = true;  ///< Watertight traversal.
+};
+
+class Accel {
+ public:
+  explicit Accel(const AccelOptions& options);
+  ~Accel();
+  Accel(const Accel&) = delete;
+  Accel& operator=(const Accel&) = delete;
+
+  static constexpr int kWorld = 0;
+
+  /// Starts a new object group; returns its number.
+  int add_group();
+  void add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha);
+  void add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha);
+  void add_analytic(int group, const AnalyticShape& shape_geometry, int shape, const AlphaTest* alpha);
+  /// Places a group in the world; keys are group-to-render matrices, evenly spaced over time [0,1] and
+  /// interpolated linearly between. Returns the instance's index.
+  int add_instance(int group, const std::vector<Affine>& keys);
+
+  /// Builds the acceleration structures. Returns an error text, "" when all went well.
+  std::string build();
+
+  /// `coherent`: neighbouring rays are alike (camera rays, shadow rays to one light).
+  void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
+  /// Writes 1 where something is hit before t_max, else 0.
+  void occluded(const RayLanes& rays, uint8_t* blocked, bool coherent) const;
+
+  /// Bytes Embree holds.
+  size_t bytes() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// "Embree 3.13.5" for logs.
+std::string accel_version();
+
+}  // namespace whit

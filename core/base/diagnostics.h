@@ -1,0 +1,61 @@
+// What the libraries say about a scene: problems with their place and remedy, collected and never printed here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace whit {
+
+/// A place in a source file: which file, and the byte in it. Line and column are derived when a message
+/// is shown (parser/source.h), so that keeping the place of every value costs eight bytes.
+struct SourcePos {
+  static constexpr uint32_t kNoFile = 0xffffffffu;
+  uint32_t file = kNoFile;
+  uint64_t offset = 0;
+  bool known() const { return file != kNoFile; }
+};
+
+enum class Severity : uint8_t { Warning, Error };
+
+/// Which exit code an error leads to: the scene is wrong (3), or a file could not be read or written (4).
+enum class ErrorClass : uint8_t { Scene, File };
+
+struct Diagnostic {
+  Severity severity = Severity::Error;
+  ErrorClass error_class = ErrorClass::Scene;
+  SourcePos where;
+  std::string message;  ///< What is wrong, naming the thing: "sphere has no parameter \"raduis\"".
+  std::string remedy;   ///< What to do, or what was done instead: "did you mean \"radius\"?"; may be empty.
+};
+
+/// An ordered collection of diagnostics. Not thread-safe: one per stage, merged by append().
+class Diagnostics {
+ public:
+  void error(SourcePos where, std::string message, std::string remedy = {}) {
+    add({Severity::Error, ErrorClass::Scene, where, std::move(message), std::move(remedy)});
+  }
+  void file_error(SourcePos where, std::string message, std::string remedy = {}) {
+    add({Severity::Error, ErrorClass::File, where, std::move(message), std::move(remedy)});
+  }
+  void warning(SourcePos where, std::string message, std::string remedy = {}) {
+    add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy)});
+  }
+  void add(Diagnostic d) { all_.push_back(std::move(d)); }
+  void append(const Diagnostics& other) { all_.insert(all_.end(), other.all_.begin(), other.all_.end()); }
+
+  const std::vector<Diagnostic>& all() const { return all_; }
+  bool has_errors() const;
+
+ private:
+  std::vector<Diagnostic> all_;
+};
+
+/// The candidate nearest to `name` by edit distance (case ignored at half cost), or "" when none is near
+/// enough to be a likely slip (more than a third of the letters differ).
+std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates);
+
+/// ", did you mean \"x\"?" style remedy text for a misspelt name, or "" when nothing is near.
+std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
+
+}  // namespace whit

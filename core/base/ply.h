@@ -1,0 +1,26 @@
+// Reads triangle meshes from PLY files (Turk 1994): ascii, little and big endian binary, any order and type of
+// properties. Works on bytes in memory; who maps the file and who reports the error is the caller's business.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace whit {
+
+/// The mesh of a PLY file. Every index is below the number of vertices and every number is finite.
+struct PlyMesh {
+  std::vector<double> positions;  ///< x y z per vertex.
+  std::vector<float> normals;     ///< nx ny nz per vertex, or empty.
+  std::vector<float> uvs;         ///< u v per vertex (also s t, texture_u texture_v, texture_s texture_t), or empty.
+  std::vector<uint32_t> indices;  ///< 3 per triangle; a quad 0 1 2 3 becomes 0 1 2 and 3 0 2.
+  size_t skipped_faces = 0;       ///< Faces with fewer than 3 or more than 4 corners, which are left out.
+};
+
+/// Reads the mesh from the file's bytes. Returns "" or what is wrong ("PLY data ends early"); `out` is then
+/// unspecified. Counts of the header are checked against the size of the data before anything is allocated.
+std::string parse_ply(std::string_view bytes, PlyMesh& out);
+
+}  // namespace whit

@@ -1,0 +1,50 @@
+// The vector, matrix and colour types of the whole program: Imath's, under the names used here.
+//
+// Matrices follow Imath's row-vector convention, p' = p * M, so "first A, then B" is A * B. A pbrt
+// `Transform [...]` lists the matrix in exactly this order, sixteen numbers row by row.
+#pragma once
+
+#include <Imath/ImathBox.h>
+#include <Imath/ImathColor.h>
+#include <Imath/ImathMatrix.h>
+#include <Imath/ImathQuat.h>
+#include <Imath/ImathVec.h>
+
+namespace whit {
+
+using Vec2f = Imath::V2f;
+using Vec3f = Imath::V3f;
+using Vec2d = Imath::V2d;
+using Vec3d = Imath::V3d;
+using Vec2i = Imath::V2i;
+using Mat4d = Imath::M44d;
+using Box2i = Imath::Box2i;
+using Box3d = Imath::Box3d;
+
+/// Linear Rec.709 colour: radiance, reflectance or a weight, never display-encoded.
+using RGB = Imath::C3f;
+
+/// Rec.709 luminance Y of a linear colour.
+inline float luminance(const RGB& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }
+
+inline bool is_black(const RGB& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+/// The affine map of a point, w ignored (every matrix of a scene file is used affinely but for cameras).
+inline Vec3d transform_point(const Mat4d& m, const Vec3d& p) { return p * m; }
+
+/// The linear part applied to a direction.
+inline Vec3d transform_vector(const Mat4d& m, const Vec3d& v) {
+  Vec3d out;
+  m.multDirMatrix(v, out);
+  return out;
+}
+
+/// True when the linear part turns a right-handed frame into a left-handed one.
+inline bool swaps_handedness(const Mat4d& m) {
+  const double det = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+                     m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+                     m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  return det < 0;
+}
+
+}  // namespace whit

@@ -1,0 +1,16 @@
+// The OpenColorIO configuration that whit uses when the user has none (for display.cpp; not for other folders).
+#pragma once
+
+#include <OpenColorIO/OpenColorIO.h>
+
+namespace whit {
+
+/// The exact sRGB curve of IEC 61966-2-1 as pbrt-v3 has it, clamped to [0, 1]: 12.92 v up to 0.0031308, else
+/// 1.055 v^(1/2.4) - 0.055. NaN gives 0.
+float srgb_encode(float v);
+
+/// Linear Rec.709 as scene_linear, the display "sRGB" with the views "sRGB", "ACES SDR" and "exposure"; the last uses
+/// `exposure` in [0, 1). May throw OpenColorIO's exceptions.
+OCIO_NAMESPACE::ConstConfigRcPtr make_builtin_config(float exposure);
+
+}  // namespace whit

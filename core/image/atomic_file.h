@@ -1,0 +1,43 @@
+// A file that appears complete or not at all (used by write.cpp; not for other folders).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace whit {
+
+/// Writes to a temporary file next to `path`; commit() renames it, anything else removes it. The first
+/// failure is kept and makes commit() fail, so callers need not check every write.
+class AtomicFile {
+ public:
+  /// Creates the temporary file. A symbolic link is followed: its target is replaced, not the link.
+  explicit AtomicFile(const std::string& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Writes `size` bytes at byte `offset`; returns how many were written.
+  size_t write_at(const void* data, size_t size, int64_t offset);
+
+  /// Reads back bytes already written; returns how many.
+  size_t read_at(void* data, size_t size, int64_t offset) const;
+
+  /// The bytes written so far (the furthest end).
+  int64_t size() const { return size_; }
+
+  /// Flushes to the disk, closes and renames. Returns "" or the reason (errno's text).
+  std::string commit();
+
+  /// The first failure so far, "" when there was none.
+  const std::string& failure() const { return failure_; }
+
+ private:
+  void fail(int error_number);
+
+  std::string target_, temporary_, failure_;
+  int64_t size_ = 0;
+  int fd_ = -1;
+};
+
+}  // namespace whit

@@ -1,0 +1,63 @@
+// Pictures of the whole sphere of directions as light: lat-long maps with matching importance sampling.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/distribution.h"
+#include "core/image/image.h"
+#include "core/plugin/environment.h"
+
+namespace whit {
+
+/// How a map is read between texels.
+enum class LatLongRule : uint8_t {
+  Pbrt,   ///< As pbrt-v3's MIP map: sides enlarged to powers of two, and at the poles the top row meets the bottom row.
+  Exact,  ///< As the file is, and the poles have the value of their row.
+};
+
+/// A lat-long map: u = phi / 2 pi with phi = atan2(y, x), v = theta / pi with theta from +z; the top row is the zenith.
+/// Radiance is bilinear between texel centres. Directions are drawn cell by cell of the grid whose corners are the
+/// texel centres, each cell by the mean of its radiance times its solid angle, and uniformly in solid angle inside: so
+/// the density is positive wherever the radiance is, and has no singularity at the poles.
+class LatLongMap final : public DirectionalRadiance {
+ public:
+  /// Radiances are the picture's raw numbers times `factor`. Numbers that are negative, infinite or NaN count as 0;
+  /// `bad_texels` returns how many there were.
+  LatLongMap(const Image& image, const RGB& factor, LatLongRule rule, size_t& bad_texels);
+
+  void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const override;
+  void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override;
+
+ private:
+  /// A row of cells: the angle theta between two circles of latitude.
+  struct Band {
+    float pole;       ///< +1: measured from +z, -1: from -z.
+    float low, high;  ///< 1 - |cos theta| at its edges, the part nearer to v = 0 first.
+    float density;    ///< One over the solid angle of a cell.
+  };
+
+  void look_up(int n, const float* x, const float* y, const RGBLanes& out) const;
+  void find_density(int n, const float* x, const float* y, float* pdf) const;
+  void build_texels(const Image& image, const RGB& factor, size_t& bad_texels);
+  void build_bands();
+  void build_cells();
+  /// The texel rows a band lies between; at the poles by the rule.
+  int row_above(int band) const;
+  int row_below(int band) const;
+
+  int width_ = 0, height_ = 0;
+  LatLongRule rule_;
+  std::vector<float> texels_;  ///< RGB, row by row.
+  std::vector<Band> bands_;    ///< height + 1: band k lies between the centres of texel rows k - 1 and k.
+  GridDistribution cells_;
+};
+
+/// Reads the lat-long map of a light statement. Reports a file that cannot be read (error, null returned) and bad
+/// texels (warning).
+std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, const RGB& factor, LatLongRule rule,
+                                                   const PrepareContext& ctx);
+
+}  // namespace whit

@@ -1,0 +1,99 @@
+// A MIP map with pbrt-v3's filters: trilinear, and elliptically weighted averages (EWA).
+//
+// Why not OpenImageIO's TextureSystem: scenes were lit with pbrt-v3's filter in mind and its pictures are the
+// reference. OpenImageIO's anisotropic filter takes another footprint and another kernel, and its MIP levels of
+// an 8-bit file average the encoded sRGB values in 8 bits, which darkens and bands. So OpenImageIO decodes the
+// file and this class filters, in linear light.
+//
+// Sources: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 10.4; Heckbert, Fundamentals of
+// Texture Mapping and Image Warping, 1989 (EWA); Williams, Pyramidal Parametrics, 1983 (trilinear).
+#pragma once
+
+#include <Imath/half.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/image/texels.h"
+
+namespace whit {
+
+/// What a MIP map is made of besides the picture.
+struct MipMapOptions {
+  bool single = false;  ///< One channel, the luminance; otherwise RGB (a grey picture still takes one).
+  WrapMode wrap = WrapMode::Repeat;
+  bool gamma = false;  ///< Decode sRGB.
+  float scale = 1;     ///< Times every value, after decoding.
+  bool flip = true;    ///< t = 0 is the bottom row (imagemap); false: the top row (lights).
+};
+
+/// How to filter.
+struct MipFilter {
+  bool trilinear = false;    ///< Otherwise EWA.
+  float max_anisotropy = 8;  ///< Longest to shortest axis of the EWA ellipse; kept within [0.01, 256].
+};
+
+/// Footprints of n lookups: st and its change from one pixel to the next along x and y. The four derivative
+/// arrays may all be null, which asks for a bilinear lookup in the finest level.
+struct LookupPoints {
+  int n = 0;
+  const float* s = nullptr;
+  const float* t = nullptr;
+  const float* dsdx = nullptr;
+  const float* dtdx = nullptr;
+  const float* dsdy = nullptr;
+  const float* dtdy = nullptr;
+};
+
+/// The pyramid and its filters. Immutable, so any number of threads may look up. A result depends on its own point
+/// only, to the bit, not on n or its place in the batch. Points that are not finite give NaN; footprints
+/// that are not finite cover everything and give the coarsest level.
+///
+/// Storage: a picture of 8 bits with sides that are powers of two keeps its bytes in level 0 (exact); other levels of 8-bit,
+/// 16-bit and half pictures are half (relative error below 0.05 %); float pictures are float.
+class MipMap {
+ public:
+  MipMap(const Image& image, const MipMapOptions& options);
+
+  int channels() const { return channels_; }  ///< 1 or 3.
+  int level_count() const { return static_cast<int>(levels_.size()); }
+  int width(int level = 0) const { return levels_[level].width; }    ///< A power of two.
+  int height(int level = 0) const { return levels_[level].height; }  ///< A power of two.
+  size_t bytes() const;                                              ///< Memory the texels take.
+
+  /// n filtered values; `out` has one array for each channel.
+  void lookup(const LookupPoints& points, const MipFilter& filter, float* const* out) const;
+
+  /// n trilinear values for a square footprint of the given width in st; `out` as above.
+  void lookup_width(int n, const float* s, const float* t, const float* width, float* const* out) const;
+
+ private:
+  enum class Storage : uint8_t { Bytes, Halves, Floats };
+  struct Level {
+    int width = 0, height = 0;
+    Storage storage = Storage::Floats;
+    std::vector<uint8_t> bytes;       // decoded by byte_values_
+    std::vector<Imath::half> halves;  // times gain_
+    std::vector<float> floats;
+  };
+  template <int C>
+  using Value = std::array<float, C>;
+  struct Ellipse;
+  template <int C, WrapMode W>
+  class Sampler;
+  friend struct MipMapBuilder;
+
+  template <int C, class F>
+  void with_sampler(const F& f) const;
+
+  std::vector<Level> levels_;
+  int channels_ = 0;
+  WrapMode wrap_ = WrapMode::Repeat;
+  float gain_ = 1;
+  std::array<float, 256> byte_values_{};
+};
+
+}  // namespace whit

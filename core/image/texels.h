@@ -1,0 +1,42 @@
+// From a picture's raw numbers to texture values: channels, flip, sRGB decoding, and the power-of-two sides
+// that MIP maps need. The order of operations is pbrt-v3's.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+
+namespace whit {
+
+/// What lies outside [0, 1)^2: the texture again, black, or its border texels.
+enum class WrapMode : uint8_t { Repeat, Black, Clamp };
+
+/// The linear value of an sRGB-encoded one: v / 12.92 up to 0.04045, else ((v + 0.055) / 1.055)^2.4. IEC 61966-2-1.
+float srgb_decode(float v);
+
+/// pbrt-v3's default for "gamma": true for .png and .tga (any case), whose values are taken as sRGB.
+bool default_gamma(const std::string& path);
+
+/// A grid of texture values, channels innermost.
+struct Texels {
+  int width = 0, height = 0;
+  int channels = 0;           ///< 1 or 3.
+  std::vector<float> values;  ///< height x width x channels; row 0 is t = 0.
+};
+
+/// Takes a picture apart: `single` makes one channel, the Rec.709 luminance of the raw numbers; otherwise three,
+/// or one when the picture is grey. Then sRGB decoding if `gamma`, then times `scale`. `flip` puts the bottom
+/// row first, so that t = 0 is the bottom (pbrt's imagemap; its lights do not flip). Alpha is ignored.
+Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip);
+
+/// Enlarges both sides to the next power of two with a Lanczos filter (radius 2, tau 2, four normalised taps),
+/// first along s, then along t, the result clamped to >= 0. Texels that are powers of two come back as they are.
+/// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 10.4.3.
+Texels resample_to_power_of_two(Texels texels, WrapMode wrap);
+
+/// True for 1, 2, 4, 8, ...
+constexpr bool is_power_of_two(int n) { return n > 0 && (n & (n - 1)) == 0; }
+
+}  // namespace whit

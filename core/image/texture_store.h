@@ -1,0 +1,113 @@
+// Image textures of a scene: decoded when first looked up, shared when the same, dropped when memory is short.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/image/mipmap.h"
+
+namespace whit {
+
+enum class TextureKind : uint8_t { Float, Rgb };
+
+/// Everything that makes an image texture; two equal specs are one texture.
+struct TextureSpec {
+  std::string path;
+  TextureKind kind = TextureKind::Rgb;  ///< Float takes the luminance, before gamma and scale.
+  WrapMode wrap = WrapMode::Repeat;
+  bool gamma = false;  ///< Decode sRGB; see default_gamma(path).
+  float scale = 1;
+  bool trilinear = false;    ///< Otherwise EWA.
+  float max_anisotropy = 8;  ///< EWA only.
+  bool flip = true;          ///< t = 0 is the bottom row (imagemap); lights take false.
+};
+
+/// What happened so far; memory in bytes.
+struct TextureStatistics {
+  size_t resident_bytes = 0, peak_bytes = 0;
+  int64_t decodes = 0, evictions = 0;
+  int64_t lookups = 0;  ///< Points looked up.
+};
+
+class TextureStore;
+
+/// One image texture: a handle that a TextureStore made and owns. Lookups may come from any thread; results
+/// depend on their own point only, to the bit. Linear Rec.709 values, unless the file holds something else.
+class ImageTexture {
+ public:
+  /// n filtered RGB values. The derivatives of st along the screen's x and y may all be null: bilinear at the
+  /// finest level. A texture of one channel gives r = g = b. A file that cannot be decoded gives black, and the store
+  /// keeps the error.
+  void lookup(int n, const float* s, const float* t, const float* dsdx, const float* dtdx, const float* dsdy,
+              const float* dtdy, float* r, float* g, float* b) const;
+
+  /// n filtered numbers: the channel of a Float texture, the luminance of an RGB one.
+  void lookup_float(int n, const float* s, const float* t, const float* dsdx, const float* dtdx, const float* dsdy,
+                    const float* dtdy, float* out) const;
+
+  /// n RGB values, trilinear over a square of side `width` in st (pbrt's Lookup(st, width)).
+  void lookup_width(int n, const float* s, const float* t, const float* width, float* r, float* g, float* b) const;
+
+  /// The decoded pyramid, for callers that scan it (a light's sampling table); kept alive by the pointer. Null when the
+  /// file cannot be decoded.
+  std::shared_ptr<const MipMap> pyramid() const;
+
+  const TextureSpec& spec() const { return spec_; }
+
+ private:
+  friend class TextureStore;
+  struct Source;
+  ImageTexture(TextureStore& store, Source& source, TextureSpec spec);
+  std::shared_ptr<const MipMap> acquire(int n) const;
+
+  TextureStore& store_;
+  Source& source_;
+  TextureSpec spec_;
+};
+
+/// Owns the textures of a scene. Thread-safe. Handles live as long as the store.
+class TextureStore {
+ public:
+  TextureStore();
+  ~TextureStore();
+  TextureStore(const TextureStore&) = delete;
+  TextureStore& operator=(const TextureStore&) = delete;
+
+  /// The texture of that spec, made on first request; reads nothing (check the file with probe_image).
+  const ImageTexture* add(const TextureSpec& spec);
+
+  /// Resident pyramids beyond this many bytes (default 1 GiB) are dropped, the least recently used first, and decoded
+  /// again when needed. One in use stays until its lookup ends; the latest decoded stays in any case.
+  void set_memory_limit(size_t bytes);
+
+  TextureStatistics statistics() const;
+
+  /// Why textures could not be decoded, one line each naming the file; empty when all is well.
+  std::vector<std::string> errors() const;
+
+ private:
+  friend class ImageTexture;
+  using SourceKey = std::tuple<std::string, TextureKind, WrapMode, bool, float, bool>;
+  using TextureKey = std::tuple<SourceKey, bool, float>;
+  struct Memory;
+
+  std::shared_ptr<const MipMap> resident(ImageTexture::Source& source);
+  std::shared_ptr<const MipMap> decode(ImageTexture::Source& source);
+  void evict(const ImageTexture::Source& keep);
+
+  mutable std::mutex mutex_;  // guards the maps' structure, not the sources
+  std::map<SourceKey, std::unique_ptr<ImageTexture::Source>> sources_;
+  std::map<TextureKey, std::unique_ptr<ImageTexture>> textures_;
+  std::shared_ptr<Memory> memory_;
+  std::atomic<size_t> limit_{size_t{1} << 30};
+  std::atomic<int64_t> decodes_{0}, evictions_{0}, clock_{0};  // clock_ counts changes of the texture in use
+};
+
+}  // namespace whit

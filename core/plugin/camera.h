@@ -1,0 +1,46 @@
+// Cameras: batches of film positions to rays.
+#pragma once
+
+#include "core/batch/lanes.h"
+#include "core/plugin/param.h"
+
+namespace whit {
+
+/// Rays in camera space: the camera at the origin, looking along +z, y up, x right (left-handed, as in pbrt).
+struct CameraRays {
+  int n = 0;
+  // In.
+  const float *film_x = nullptr, *film_y = nullptr;  ///< Continuous raster coordinates, pixel (i,j) covers [i,i+1)x[j,j+1).
+  const float *lens_u = nullptr, *lens_v = nullptr;  ///< In [0,1); null when the camera needs no lens.
+  // Out.
+  Vec3Lanes o;               ///< Origin, in scene units.
+  Vec3Lanes d;               ///< Unit direction.
+  float* weight = nullptr;   ///< Multiplies the radiance; 0 for a ray that does not reach the film.
+  /// Rays one pixel further in x and y, null when not wanted.
+  Vec3Lanes rx_o, rx_d, ry_o, ry_d;
+};
+
+/// What a camera is told of the film before prepare().
+struct FilmGeometry {
+  Vec2i resolution{0, 0};
+  double diagonal = 0.035;  ///< Metres.
+};
+
+class Camera : public Plugin {
+ public:
+  FilmGeometry film;
+  float shutter_open = 0, shutter_close = 1;  ///< Times; transforms of the scene run from time_start to time_end.
+
+  virtual bool needs_lens() const { return false; }
+  virtual void generate(const CameraRays& rays) const = 0;
+};
+
+/// The shutter parameters every camera has.
+inline auto shutteropen_param() {
+  return param(&Camera::shutter_open, "shutteropen", 0.0f, Unit::Seconds, "Time at which the shutter opens.");
+}
+inline auto shutterclose_param() {
+  return param(&Camera::shutter_close, "shutterclose", 1.0f, Unit::Seconds, "Time at which the shutter closes.");
+}
+
+}  // namespace whit

@@ -1,0 +1,53 @@
+// Lights: batches of points ask a light for directions, radiance and densities; escaped rays ask for radiance.
+#pragma once
+
+#include <limits>
+
+#include "core/batch/lanes.h"
+#include "core/plugin/param.h"
+
+namespace whit {
+
+/// One sample of one light for each of n points, structure of arrays, render space.
+struct LightSamples {
+  int n = 0;
+  // In.
+  Vec3Lanes p;                   ///< Reference points.
+  const float *u = nullptr, *v = nullptr;  ///< Uniform numbers in [0,1); null for a delta light.
+  // Out.
+  Vec3Lanes wi;                  ///< Unit direction from p towards the light.
+  float* distance = nullptr;     ///< Along wi to the sampled point, shortened so that it stays in front of the
+                                 ///< light's own surface; infinity for lights at infinity.
+  RGBLanes radiance;             ///< Incident radiance divided by pdf; 0 where the light does not reach p.
+};
+
+class Light : public Plugin {
+ public:
+  /// Light-to-world, set by the builder before prepare().
+  Mat4d light_to_world;
+
+  /// Delta lights need no random numbers.
+  virtual bool is_delta() const { return false; }
+  virtual void sample(const LightSamples& s) const = 0;
+
+  /// Lights at infinity are seen by rays that leave the scene.
+  virtual bool is_environment() const { return false; }
+  /// Adds the radiance arriving along n escaped rays (origin o, unit direction d, render space) to out.
+  virtual void add_escaped(int /*n*/, const Vec3Lanes& /*o*/, const Vec3Lanes& /*d*/, const RGBLanes& /*out*/) const {}
+  /// Density (solid angle) with which sample() would choose unit direction d from point p: for tests and
+  /// multiple importance sampling. 0 for delta lights.
+  virtual float pdf(const Vec3f& /*p*/, const Vec3f& /*d*/) const { return 0; }
+  /// True when the light gives nothing anywhere (power 0), so that the plan drops it.
+  virtual bool is_black() const { return false; }
+};
+
+/// The emission of a surface (AreaLightSource): what the shape it sits on radiates. Where to sample is the
+/// shape's business.
+class AreaLight : public Plugin {
+ public:
+  /// Emitted radiance, the same in every direction of the emitting side(s).
+  virtual RGB radiance() const = 0;
+  virtual bool two_sided() const = 0;
+};
+
+}  // namespace whit

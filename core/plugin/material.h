@@ -1,0 +1,37 @@
+// Materials: which lobes a surface has, and how strong, at the points of a batch.
+#pragma once
+
+#include "core/batch/lobe.h"
+#include "core/plugin/param.h"
+#include "core/plugin/texture.h"
+
+namespace whit {
+
+/// A surface material. One batch function; the renderer does the rest (bump mapping, evaluation, sampling).
+class Material : public Plugin {
+ public:
+  Tex<float> bump;  ///< Displacement along the normal, in scene units; constant means no bump.
+
+  /// Adds the lobes of the s.n points to `out`. Arrays come from s.arena. Weights are clamped to >= 0 by clamp0.
+  virtual void lobes(const ShadingBatch& s, LobeSet& out) const = 0;
+
+  /// True for a material that is not there (pbrt's "none"): rays pass on unchanged and nothing is shaded.
+  virtual bool is_interface() const { return false; }
+};
+
+/// The bump map parameter, the same for every material that has one.
+inline auto bumpmap_param() {
+  return param(&Material::bump, "bumpmap", 0.0f, Unit::Length, "Displacement along the normal that tilts the shading normal.");
+}
+
+/// Clamps colours from below at 0, in place, and returns them: pbrt clamps reflectances only there.
+inline RGBLanes clamp0(int n, RGBLanes c) {
+  for_lanes(n, [&](int i) {
+    c.r[i] = c.r[i] > 0 ? c.r[i] : 0.0f;
+    c.g[i] = c.g[i] > 0 ? c.g[i] : 0.0f;
+    c.b[i] = c.b[i] > 0 ? c.b[i] : 0.0f;
+  });
+  return c;
+}
+
+}  // namespace whit

@@ -1,0 +1,34 @@
+// What materials make of their parameters before it goes into lobes.
+#pragma once
+
+#include "core/plugin/material.h"
+
+namespace whit {
+
+/// An array of s.n times the same number.
+float* filled(const ShadingBatch& s, float value);
+
+/// The Trowbridge-Reitz alphas of a roughness, at least pbrt-v3's 0.001; `remap` applies pbrt's roughness_to_alpha().
+float* alphas(const Tex<float>& roughness, bool remap, const ShadingBatch& s);
+
+/// Relative indices of refraction, kept within [0.001, 1000]: a texture may give anything, and no index is 0.
+float* indices(const Tex<float>& index, const ShadingBatch& s);
+
+/// Reflectances or transmittances, clamped from below.
+inline RGBLanes weights(const Tex<RGB>& colour, const ShadingBatch& s) { return clamp0(s.n, colour(s)); }
+
+inline bool is_black(const Tex<RGB>& colour) {
+  const RGB v = colour.value();
+  return colour.is_constant() && v.x <= 0 && v.y <= 0 && v.z <= 0;
+}
+
+/// The effects of a material's textures and of its bump map.
+template <class... Textures>
+EffectSet effects_of(const Material& material, const Textures&... textures) {
+  EffectSet e = material.bump.effects();
+  ((e |= textures.effects()), ...);
+  if (!material.bump.is_constant()) e.add(Effect::Bump);
+  return e;
+}
+
+}  // namespace whit

@@ -1,0 +1,192 @@
+// A plugin's parameters, declared once: the table that feeds binding, checks, help, docs and did-you-mean.
+//
+//   param(&Matte::sigma, "sigma", 0.0f, Unit::Degrees, "Oren-Nayar roughness; 0 is Lambertian.")
+//
+// The type of the parameter in a scene file is inferred from the member: float, int, bool, std::string, RGB,
+// Point, Vector, Choice, FileName, lists of them as spans, and Tex<float>, Tex<RGB> for texturable ones.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/base/diagnostics.h"
+#include "core/base/parameter.h"
+#include "core/base/vec.h"
+#include "core/plugin/texture.h"
+
+namespace whit {
+
+/// What a parameter's number means; shown in help and docs.
+enum class Unit : uint8_t { None, Degrees, Length, Radiance, Intensity, Irradiance, Seconds, Millimetres, Pixels };
+const char* unit_name(Unit unit);  ///< "degrees", "scene length", ...; "" for None.
+
+/// Closed range of allowed numbers. Values outside are errors at the value's own place.
+struct Range {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+};
+inline constexpr Range kAny{};
+inline constexpr Range kNonNegative{0.0};
+inline constexpr Range kPositive{std::numeric_limits<double>::min()};
+inline constexpr Range kUnit{0.0, 1.0};
+
+/// A point or vector parameter in double precision, as the file gives it.
+struct Point {
+  Vec3d value{0, 0, 0};
+};
+struct Vector {
+  Vec3d value{0, 0, 0};
+};
+
+/// The path of a file, resolved against the main file's folder when bound. Existence is checked at binding
+/// (a missing file is an error of class File at the value's place); reading waits for Plugin::prepare.
+struct FileName {
+  std::string path;  ///< Absolute, or "" when the parameter is absent.
+  std::string as_given;
+  SourcePos where;
+  bool empty() const { return path.empty(); }
+};
+
+/// A string out of a fixed list, kept as the index into it.
+struct Choice {
+  int index = 0;
+};
+
+/// Values that stay in the scene description (which outlives building): large arrays are not copied.
+/// Doubles for float, point and vector lists; flat, three (or two) per point.
+template <class T>
+struct List {
+  std::span<const T> values;
+  SourcePos where;       ///< Of the values.
+  bool given = false;
+  size_t size() const { return values.size(); }
+};
+struct FloatList : List<double> {};
+struct Point2List : List<double> {};
+struct Point3List : List<double> {};
+struct Vector3List : List<double> {};
+struct NormalList : List<double> {};
+struct IntegerList : List<int32_t> {};
+/// Pairs of surface parameters, which pbrt-v3 takes as floats or as point2 alike. Bound in shape.cpp.
+struct UvList : List<double> {};
+
+/// What binding needs to know of the scene around a statement.
+struct BindContext {
+  Diagnostics* diagnostics = nullptr;
+  SourcePos statement;                         ///< The directive being bound.
+  std::string statement_name;                  ///< "sphere", for messages.
+  std::string folder;                          ///< Of the main scene file; relative paths start here.
+  /// The bound texture of a TextureRef in the float or spectrum name space; null when there is none.
+  std::function<std::shared_ptr<Texture<float>>(int)> float_texture;
+  std::function<std::shared_ptr<Texture<RGB>>(int)> spectrum_texture;
+  /// The bound material of a name (for mix); null when there is none.
+  std::function<std::shared_ptr<class Material>(const std::string&)> named_material;
+  /// The place of the i-th value of a parameter.
+  std::function<SourcePos(const Parameter&, size_t)> value_position;
+
+  SourcePos at(const Parameter& p, size_t i = 0) const { return value_position ? value_position(p, i) : p.values_at; }
+};
+
+/// One declared parameter of a plugin class, type-erased.
+struct ParamSpec {
+  std::string name;
+  std::string type;                  ///< As a scene file and the docs spell it: "float texture", "string", ...
+  std::vector<ParamType> accepts;
+  std::string default_text;
+  Unit unit = Unit::None;
+  Range range;
+  std::string doc;
+  std::vector<std::string> choices;  ///< Of a Choice, else empty.
+  /// Stores the parameter's value into the plugin, which must be of the class the spec was declared for.
+  /// Reports errors; returns false after an error.
+  std::function<bool(Plugin& plugin, const Parameter&, const BindContext&)> bind;
+};
+
+namespace detail {
+
+/// How a member type is read from a parameter. Specialised in param.cpp for every supported type.
+template <class T>
+struct Binding {
+  static const char* type_name();
+  static std::vector<ParamType> accepts();
+  static std::string to_text(const T& value);
+  static bool read(const Parameter& p, const BindContext& ctx, const Range& range, T& out);
+};
+
+bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<std::string>& choices, Choice& out);
+
+template <class T>
+struct DefaultOf { using type = T; };
+template <> struct DefaultOf<Tex<float>> { using type = float; };
+template <> struct DefaultOf<Tex<RGB>> { using type = RGB; };
+template <> struct DefaultOf<std::string> { using type = const char*; };
+
+}  // namespace detail
+
+/// Declares a parameter: the member it fills, its name in scene files, default, unit, a sentence of
+/// documentation and the range of allowed values. The default is stored in the member's own initialiser by
+/// the registry before binding, so it is written only here.
+template <class Class, class T>
+struct DeclaredParam {
+  T Class::*member;
+  T default_value;
+  ParamSpec spec;
+};
+
+namespace detail {
+template <class Class, class T>
+DeclaredParam<Class, T> declare(T Class::*member, const char* name, T default_value, Unit unit, const char* doc,
+                                Range range) {
+  DeclaredParam<Class, T> d{member, std::move(default_value), {}};
+  d.spec.name = name;
+  d.spec.type = Binding<T>::type_name();
+  d.spec.accepts = Binding<T>::accepts();
+  d.spec.unit = unit;
+  d.spec.range = range;
+  d.spec.doc = doc;
+  d.spec.bind = [member, range](Plugin& plugin, const Parameter& p, const BindContext& ctx) {
+    return Binding<T>::read(p, ctx, range, static_cast<Class&>(plugin).*member);
+  };
+  return d;
+}
+}  // namespace detail
+
+template <class Class, class T>
+DeclaredParam<Class, T> param(T Class::*member, const char* name,
+                              typename detail::DefaultOf<T>::type default_value, Unit unit, const char* doc,
+                              Range range = kAny) {
+  auto d = detail::declare(member, name, T(default_value), unit, doc, range);
+  d.spec.default_text = detail::Binding<T>::to_text(d.default_value);
+  return d;
+}
+
+/// A parameter without a default: a list, a file name or an optional value, absent unless given.
+template <class Class, class T>
+DeclaredParam<Class, T> param(T Class::*member, const char* name, Unit unit, const char* doc,
+                              Range range = kAny) {
+  return detail::declare(member, name, T{}, unit, doc, range);
+}
+
+/// A string parameter with a fixed list of values, the first being the default.
+template <class Class>
+DeclaredParam<Class, Choice> choice(Choice Class::*member, const char* name, std::vector<std::string> choices,
+                                    const char* doc) {
+  DeclaredParam<Class, Choice> d{member, Choice{0}, {}};
+  d.spec.name = name;
+  d.spec.type = "string";
+  d.spec.accepts = {ParamType::String};
+  d.spec.default_text = '"' + choices.front() + '"';
+  d.spec.doc = doc;
+  d.spec.choices = choices;
+  d.spec.bind = [member, choices](Plugin& plugin, const Parameter& p, const BindContext& ctx) {
+    return detail::read_choice(p, ctx, choices, static_cast<Class&>(plugin).*member);
+  };
+  return d;
+}
+
+}  // namespace whit

@@ -1,0 +1,128 @@
+#include "core/plugin/registry.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+#include <utility>
+
+namespace whit {
+
+namespace {
+
+using Plugins = std::map<std::pair<std::string, std::string>, PluginInfo>;  // by category and name
+
+/// A function's static, because the plugins' static initialisers run in no particular order.
+Plugins& plugins() {
+  static Plugins all;
+  return all;
+}
+
+/// "rgb, xyz or spectrum".
+std::string join_types(const std::vector<ParamType>& types) {
+  std::string text;
+  for (size_t i = 0; i < types.size(); ++i) {
+    if (i > 0) text += i + 1 == types.size() ? " or " : ", ";
+    text += param_type_name(types[i]);
+  }
+  return text;
+}
+
+bool accepts(const ParamSpec& spec, ParamType type) {
+  return std::find(spec.accepts.begin(), spec.accepts.end(), type) != spec.accepts.end();
+}
+
+bool known_elsewhere(const Parameter& p, const std::vector<const PluginInfo*>& also_known, bool any_type) {
+  return std::any_of(also_known.begin(), also_known.end(), [&](const PluginInfo* info) {
+    const ParamSpec* spec = info ? info->find_param(p.name) : nullptr;
+    return spec && (any_type || accepts(*spec, p.type));
+  });
+}
+
+void warn_unknown(const PluginInfo& info, const Parameter& p, const BindContext& ctx,
+                  const std::vector<const PluginInfo*>& also_known) {
+  std::vector<std::string> names;
+  const auto add_names = [&](const PluginInfo* plugin) {
+    for (const ParamSpec& spec : plugin->params) names.push_back(spec.name);
+  };
+  add_names(&info);
+  for (const PluginInfo* other : also_known)
+    if (other) add_names(other);
+  const std::string hint = did_you_mean(p.name, names);
+  ctx.diagnostics->warning(p.where, info.name + " has no parameter \"" + p.name + '"',
+                           hint.empty() ? "it is ignored" : hint);
+}
+
+void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parameter& p, const BindContext& ctx) {
+  const std::string used =
+      spec.default_text.empty() ? "it is ignored" : "the default " + spec.default_text + " is used";
+  ctx.diagnostics->warning(p.where,
+                           std::string("parameter \"") + p.name + "\" of " + info.name + " is of type " +
+                               join_types(spec.accepts) + ", not " + param_type_name(p.type),
+                           used);
+}
+
+/// Binds one parameter, or says why not. False after an error.
+bool bind_parameter(const PluginInfo& info, Plugin& plugin, const Parameter& p, const BindContext& ctx,
+                    const std::vector<const PluginInfo*>& also_known) {
+  const ParamSpec* spec = info.find_param(p.name);
+  if (spec && accepts(*spec, p.type)) return spec->bind(plugin, p, ctx);
+  if (known_elsewhere(p, also_known, /*any_type=*/!spec)) return true;
+  if (spec) warn_wrong_type(info, *spec, p, ctx);
+  else warn_unknown(info, p, ctx, also_known);
+  return true;
+}
+
+}  // namespace
+
+const ParamSpec* PluginInfo::find_param(const std::string& param_name) const {
+  const auto it = std::find_if(params.begin(), params.end(), [&](const ParamSpec& s) { return s.name == param_name; });
+  return it == params.end() ? nullptr : &*it;
+}
+
+const PluginInfo* find_plugin(const std::string& category, const std::string& name) {
+  if (const auto it = plugins().find({category, name}); it != plugins().end()) return &it->second;
+  for (const auto& [key, info] : plugins()) {
+    if (key.first != category) continue;
+    if (std::find(info.aliases.begin(), info.aliases.end(), name) != info.aliases.end()) return &info;
+  }
+  return nullptr;
+}
+
+std::vector<const PluginInfo*> list_plugins(const std::string& category) {
+  std::vector<const PluginInfo*> out;
+  for (const auto& [key, info] : plugins())
+    if (category.empty() || key.first == category) out.push_back(&info);
+  return out;
+}
+
+std::vector<std::string> plugin_names(const std::string& category) {
+  std::vector<std::string> out;
+  for (const PluginInfo* info : list_plugins(category)) out.push_back(info->name);
+  return out;
+}
+
+void add_plugin(PluginInfo info) {
+  std::vector<std::string> names = info.aliases;
+  names.push_back(info.name);
+  for (const std::string& name : names) {
+    // A mistake of the programmer's, caught before main(): the uncaught exception ends the program and names it.
+    if (find_plugin(info.category, name))
+      throw std::logic_error("two plugins are " + info.category + " \"" + name + '"');
+  }
+  const auto key = std::make_pair(info.category, info.name);
+  plugins().emplace(key, std::move(info));
+}
+
+bool bind_parameters(const PluginInfo& info, Plugin& plugin, const ParameterList& params, const BindContext& ctx,
+                     const std::vector<const PluginInfo*>& also_known) {
+  bool ok = true;
+  // Values first, so that a texture wins over a value of the same name, as in pbrt, wherever it stands.
+  for (const bool textures : {false, true}) {
+    for (const Parameter& p : params) {
+      if ((p.type == ParamType::Texture) == textures) ok = bind_parameter(info, plugin, p, ctx, also_known) && ok;
+    }
+  }
+  return ok;
+}
+
+}  // namespace whit

@@ -1,0 +1,34 @@
+// Samplers: stateless functions of (pixel, sample index, dimension), evaluated over batches.
+#pragma once
+
+#include "core/batch/lanes.h"
+#include "core/plugin/param.h"
+
+namespace whit {
+
+/// Which samples numbers are wanted for.
+struct SampleKeys {
+  int n = 0;
+  const int32_t *px = nullptr, *py = nullptr;  ///< Pixel.
+  const uint32_t* index = nullptr;             ///< Sample number within the pixel, in [0, samples_per_pixel()).
+  const uint32_t* stream = nullptr;            ///< Branch of the ray tree: 0 at the camera; decorrelates branches.
+};
+
+class Sampler : public Plugin {
+ public:
+  uint32_t seed = 0;  ///< Set by the program before prepare().
+
+  /// Samples per pixel, after the rounding the sampler needs (stratified, powers of two).
+  virtual int samples_per_pixel() const = 0;
+  /// Overrides the count (--spp); the sampler rounds as it must. Returns the count it will use.
+  virtual int set_samples_per_pixel(int n) = 0;
+
+  /// Numbers in [0,1) of one dimension, or of the pair (dimension, dimension + 1).
+  virtual void get_1d(const SampleKeys& keys, int dimension, float* u) const = 0;
+  virtual void get_2d(const SampleKeys& keys, int dimension, float* u, float* v) const = 0;
+
+  /// Positions within the pixel, in [0,1)^2; by default dimensions 0 and 1.
+  virtual void pixel_offset(const SampleKeys& keys, float* u, float* v) const { get_2d(keys, 0, u, v); }
+};
+
+}  // namespace whit

@@ -1,0 +1,130 @@
+// Shapes: triangle meshes, which core hands to the ray tracer as they are, and analytic shapes (quadrics),
+// which intersect batches of rays themselves in double precision.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/batch/lanes.h"
+#include "core/batch/shading.h"
+#include "core/plugin/param.h"
+#include "core/plugin/texture.h"
+
+namespace whit {
+
+class Shape : public Plugin {
+ public:
+  Tex<float> alpha{1.0f};        ///< Where exactly 0 the surface is not there.
+  Tex<float> shadow_alpha{1.0f}; ///< The same, for shadow rays only, in addition to alpha.
+};
+
+/// For lists of coordinates: any number that is one. NaN, infinity and what a float cannot hold are errors at
+/// the value's own place.
+inline constexpr Range kCoordinates{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
+
+/// The alpha parameters of shapes that can be cut out.
+inline auto alpha_param() {
+  return param(&Shape::alpha, "alpha", 1.0f, Unit::None, "Where this is exactly 0 the surface is cut away.");
+}
+inline auto shadowalpha_param() {
+  return param(&Shape::shadow_alpha, "shadowalpha", 1.0f, Unit::None,
+               "Where this is exactly 0 the surface casts no shadow.");
+}
+
+/// A triangle mesh in object space. Positions may stay in the scene description (positions) or be owned.
+struct MeshData {
+  std::span<const double> positions;  ///< Flat, 3 per vertex, object space.
+  std::vector<double> owned_positions;
+  std::vector<uint32_t> indices;      ///< 3 per triangle, counter-clockwise seen from the front.
+  std::vector<float> normals;         ///< Flat, 3 per vertex, object space, or empty.
+  std::vector<float> tangents;        ///< pbrt's "S", flat, 3 per vertex, or empty.
+  std::vector<float> uvs;             ///< Flat, 2 per vertex, or empty.
+};
+
+/// Removes the triangles that have no area (two corners alike, or all three on a line as far as double
+/// precision can tell). Returns how many there were.
+size_t remove_degenerate_triangles(MeshData& mesh);
+
+/// A shape that is, or turns itself into, a triangle mesh.
+class MeshShape : public Shape {
+ public:
+  /// Reads or builds the mesh. Indices are valid and no value is NaN or infinite when this returns true;
+  /// otherwise an error has been reported.
+  virtual bool build_mesh(const PrepareContext& ctx, MeshData& out) = 0;
+};
+
+/// Rays for analytic shapes, in object space and double precision. Directions are not unit vectors: t is
+/// the same number in every space.
+struct ObjectRays {
+  int n = 0;
+  const double *ox = nullptr, *oy = nullptr, *oz = nullptr;
+  const double *dx = nullptr, *dy = nullptr, *dz = nullptr;
+  const double* t_min = nullptr;
+  double* t = nullptr;  ///< In: t_max. Out: the nearest hit in (t_min, t_max), or unchanged.
+};
+
+/// A point of an analytic shape with its local geometry, in object space.
+struct SurfacePoint {
+  Vec3d p;            ///< On the surface (refined).
+  Vec3d p_error;      ///< Bound on |p - exact| per component.
+  double u = 0, v = 0;
+  Vec3d dpdu, dpdv;
+  Vec3d dndu, dndv;   ///< Derivatives of the unit normal normalize(dpdu x dpdv).
+};
+
+/// A point sampled on a shape for lighting.
+struct ShapeSample {
+  Vec3d p;      ///< In the space of the shape's placement.
+  Vec3d n;      ///< Unit, oriented as the shape's front.
+  double pdf;   ///< Density with respect to solid angle at the reference point, or to area (see the call).
+};
+
+/// A shape given by equations. It is placed once: object space to the space of its scene (render space, or
+/// the local space of an object definition).
+class AnalyticShape : public Shape {
+ public:
+  void place(const Mat4d& object_to_scene, bool reverse_orientation);
+  const Mat4d& object_to_scene() const { return object_to_scene_; }
+  const Mat4d& scene_to_object() const { return scene_to_object_; }
+  /// True when normals flip: ReverseOrientation XOR the transform swaps handedness.
+  bool flips_normals() const { return flips_; }
+
+  virtual Box3d object_bounds() const = 0;
+
+  /// Finds the nearest hits, without cancellation: t within 2 ulp of the exact root.
+  virtual void intersect(const ObjectRays& rays) const = 0;
+
+  /// The local geometry at a hit: `p` is the computed hit point in object space.
+  virtual SurfacePoint surface(const Vec3d& p) const = 0;
+
+  /// The point of the surface at parameters in [0,1)^2 uniform in *object-space* area, with its unnormalised
+  /// outward object-space normal direction dpdu x dpdv (before flips) as n, and pdf = 1 / object area.
+  virtual ShapeSample sample_area(double u0, double u1) const = 0;
+
+  /// A point on the shape as seen from `ref`, all in scene space (see place()), for u in [0,1)^2; pdf with
+  /// respect to solid angle at ref, 0 when the sample is useless. The default samples by area, with the
+  /// exact Jacobian of the placement; the sphere samples its cone.
+  virtual ShapeSample sample_from(const Vec3d& ref, double u0, double u1) const;
+
+ protected:
+  Mat4d object_to_scene_, scene_to_object_;
+  bool flips_ = false;
+};
+
+/// Cubic Bezier segments with varying widths. Flat: always facing the ray. Cylinder: the same, shaded as a
+/// tube. Ribbon: turned by the normals.
+struct CurveData {
+  enum class Kind { Flat, Ribbon, Cylinder } kind = Kind::Flat;
+  std::vector<double> control_points;  ///< Cubic Bezier, 4 x 3 per segment, object space.
+  std::vector<float> widths;           ///< 4 per segment, object space, full width (not radius).
+  std::vector<float> normals;          ///< Ribbon: 4 x 3 per segment.
+  std::vector<float> u_range;          ///< 2 per segment: u at its start and end, over the whole curve.
+};
+
+/// A shape made of curves (hair, grass), traced by the ray tracer's own curve primitive.
+class CurveShape : public Shape {
+ public:
+  virtual bool build_curves(const PrepareContext& ctx, CurveData& out) = 0;
+};
+
+}  // namespace whit

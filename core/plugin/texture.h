@@ -1,0 +1,80 @@
+// Textures: functions from surface points to numbers or colours, and Tex<T>, a parameter that may be one.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "core/batch/shading.h"
+#include "core/plugin/plugin.h"
+
+namespace whit {
+
+/// One value per lane: floats, or colour triples.
+template <class T>
+struct ValueLanes;
+template <>
+struct ValueLanes<float> {
+  using type = float*;
+  static type alloc(Arena& a, int n) { return a.floats(n); }
+  static void set(type lanes, int i, float v) { lanes[i] = v; }
+};
+template <>
+struct ValueLanes<RGB> {
+  using type = RGBLanes;
+  static type alloc(Arena& a, int n) { return a.rgb(n); }
+  static void set(const type& lanes, int i, const RGB& v) { lanes.set(i, v); }
+};
+
+/// A texture of floats or of linear colours (RGB).
+template <class T>
+class Texture : public Plugin {
+ public:
+  using Lanes = typename ValueLanes<T>::type;
+
+  /// The CTM at the Texture statement, set by the builder before prepare(): where non-uv mappings live.
+  Mat4d texture_to_world;
+
+  /// Writes the texture's value at each of the s.n points to out[0 .. s.n).
+  virtual void evaluate(const ShadingBatch& s, const Lanes& out) const = 0;
+
+  /// The value when it is the same everywhere, so that it folds away; nullopt otherwise. After binding.
+  virtual std::optional<T> constant() const { return std::nullopt; }
+};
+
+/// A parameter that is a constant or a texture. Textures that turn out constant have folded into constants.
+template <class T>
+class Tex {
+ public:
+  Tex() = default;
+  explicit Tex(const T& value) : value_(value) {}
+  explicit Tex(std::shared_ptr<Texture<T>> texture) : texture_(std::move(texture)) {
+    if (texture_) {
+      if (const auto c = texture_->constant()) value_ = *c, texture_.reset();
+    }
+  }
+
+  bool is_constant() const { return !texture_; }
+  /// The constant's value; meaningless when !is_constant().
+  const T& value() const { return value_; }
+  /// The texture, or null when constant.
+  const std::shared_ptr<Texture<T>>& texture() const { return texture_; }
+  EffectSet effects() const { return texture_ ? texture_->effects() : EffectSet{}; }
+
+  /// The value at every point of s, in s.arena.
+  typename ValueLanes<T>::type operator()(const ShadingBatch& s) const {
+    const auto out = ValueLanes<T>::alloc(*s.arena, s.n);
+    if (texture_) {
+      texture_->evaluate(s, out);
+    } else {
+      const T v = value_;
+      for_lanes(s.n, [&](int i) { ValueLanes<T>::set(out, i, v); });
+    }
+    return out;
+  }
+
+ private:
+  T value_{};
+  std::shared_ptr<Texture<T>> texture_;
+};
+
+}  // namespace whit

@@ -1,0 +1,91 @@
+// From surface points to texture coordinates: pbrt-v3's four 2D mappings and its 3D mapping.
+//
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 10.2. Transforms are composed in double
+// precision and rounded once, so that a scene far from the origin keeps its textures.
+#pragma once
+
+#include "core/plugin/registry.h"
+#include "core/plugin/texture.h"
+
+namespace whit {
+
+/// Texture coordinates of a batch, in its arena, and their derivatives along the screen's x and y; these are null when
+/// the batch has no footprints.
+struct MappedPoints {
+  float *s = nullptr, *t = nullptr;
+  float *dsdx = nullptr, *dtdx = nullptr, *dsdy = nullptr, *dtdy = nullptr;
+};
+
+/// An affine map in float: p' = (dot(p, x) + tx, dot(p, y) + ty, dot(p, z) + tz).
+struct AffineMap {
+  Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, offset{0, 0, 0};
+  AffineMap() = default;
+  explicit AffineMap(const Mat4d& m);
+  Vec3f point(const Vec3f& p) const { return vector(p) + offset; }
+  Vec3f vector(const Vec3f& v) const {
+    return {v.x * x.x + v.y * x.y + v.z * x.z, v.x * y.x + v.y * y.y + v.z * y.z, v.x * z.x + v.y * z.y + v.z * z.z};
+  }
+};
+
+/// A 2D mapping, ready to map.
+struct TextureMapping2D {
+  enum Kind { Uv, Spherical, Cylindrical, Planar } kind = Uv;
+  float su = 1, sv = 1, du = 0, dv = 0;  ///< Uv.
+  AffineMap from_render;                 ///< Spherical, Cylindrical: to texture space. Planar: x gives s, y gives t.
+
+  MappedPoints map(const ShadingBatch& s) const;
+};
+
+/// A texture in two dimensions: declares, binds and prepares its mapping. Register it with Register2D.
+template <class T>
+class Texture2D : public Texture<T> {
+ public:
+  Choice mapping;  ///< As TextureMapping2D::Kind.
+  float uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
+  Vector v1, v2;
+
+  bool prepare(const PrepareContext& ctx) override {
+    map_ = make_mapping(mapping.index, {uscale, vscale, udelta, vdelta}, v1.value, v2.value, this->texture_to_world,
+                        ctx.space);
+    return true;
+  }
+
+ protected:
+  TextureMapping2D map_;
+
+ private:
+  struct UvParameters {
+    float su, sv, du, dv;
+  };
+  static TextureMapping2D make_mapping(int kind, const UvParameters& uv, const Vec3d& v1, const Vec3d& v2,
+                                       const Mat4d& texture_to_world, const RenderSpace& space);
+};
+
+extern template class Texture2D<float>;
+extern template class Texture2D<RGB>;
+
+/// From render space to the space of 3D textures. pbrt-v3 applies the CTM of the Texture statement itself to world
+/// points, not its inverse (its 2D mappings take the inverse), and scenes are made for that.
+AffineMap mapping_3d(const Mat4d& texture_to_world, const RenderSpace& space);
+
+/// Registers a Texture2D<T> subclass, the mapping's parameters after its own.
+template <class Plugin2D, class T>
+class Register2D : public Register<Plugin2D> {
+ public:
+  template <class... D>
+  Register2D(const char* category, const char* name, const char* doc, D... own)
+      : Register<Plugin2D>(
+            category, name, doc, own...,
+            choice(&Texture2D<T>::mapping, "mapping", {"uv", "spherical", "cylindrical", "planar"},
+                   "How points become texture coordinates."),
+            param(&Texture2D<T>::uscale, "uscale", 1.0f, Unit::None, "Repeats along u (uv mapping)."),
+            param(&Texture2D<T>::vscale, "vscale", 1.0f, Unit::None, "Repeats along v (uv mapping)."),
+            param(&Texture2D<T>::udelta, "udelta", 0.0f, Unit::None, "Shift along u (uv and planar mapping)."),
+            param(&Texture2D<T>::vdelta, "vdelta", 0.0f, Unit::None, "Shift along v (uv and planar mapping)."),
+            param(&Texture2D<T>::v1, "v1", Vector{{1, 0, 0}}, Unit::None,
+                  "World-space direction of s, one over the length of a repeat (planar mapping)."),
+            param(&Texture2D<T>::v2, "v2", Vector{{0, 1, 0}}, Unit::None,
+                  "World-space direction of t, one over the length of a repeat (planar mapping).")) {}
+};
+
+}  // namespace whit

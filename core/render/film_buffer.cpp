@@ -1,0 +1,89 @@
+#include "core/render/film_buffer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace whit {
+
+FilterTable::FilterTable(const Filter& filter)
+    : x_radius_(filter.x_width),
+      y_radius_(filter.y_width),
+      x_to_table_(static_cast<float>(kSize) / filter.x_width),
+      y_to_table_(static_cast<float>(kSize) / filter.y_width),
+      x_reach_(std::max(0, static_cast<int>(std::ceil(filter.x_width - 0.5f)))),
+      y_reach_(std::max(0, static_cast<int>(std::ceil(filter.y_width - 0.5f)))),
+      table_(kSize * kSize) {
+  for (int j = 0; j < kSize; ++j) {
+    for (int i = 0; i < kSize; ++i) {
+      table_[static_cast<size_t>(j * kSize + i)] =
+          filter.evaluate((static_cast<float>(i) + 0.5f) * x_radius_ / kSize,
+                          (static_cast<float>(j) + 0.5f) * y_radius_ / kSize);
+    }
+  }
+}
+
+TileSums::TileSums(Vec2i tile, const FilterTable& filter)
+    : filter_(&filter),
+      x0_(tile.x * kTile - filter.x_reach()),
+      y0_(tile.y * kTile - filter.y_reach()),
+      width_(kTile + 2 * filter.x_reach()),
+      height_(kTile + 2 * filter.y_reach()),
+      sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)) {}
+
+void TileSums::add(float film_x, float film_y, const RGB& radiance) {
+  // Pixel p is reached when p + 0.5 is within the radius of the sample; half-open, so that a box of radius
+  // 0.5 gives every sample to exactly one pixel.
+  const float dx = film_x - 0.5f, dy = film_y - 0.5f;
+  const int px0 = std::max(static_cast<int>(std::floor(dx - filter_->x_radius())) + 1, x0_);
+  const int px1 = std::min(static_cast<int>(std::floor(dx + filter_->x_radius())), x0_ + width_ - 1);
+  const int py0 = std::max(static_cast<int>(std::floor(dy - filter_->y_radius())) + 1, y0_);
+  const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
+  for (int y = py0; y <= py1; ++y) {
+    float* sums = &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
+    for (int x = px0; x <= px1; ++x, sums += 4) {
+      const float w = filter_->weight(static_cast<float>(x) - dx, static_cast<float>(y) - dy);
+      sums[0] += w * radiance.x;
+      sums[1] += w * radiance.y;
+      sums[2] += w * radiance.z;
+      sums[3] += w;
+    }
+  }
+}
+
+namespace {
+
+/// The tiles that reach a row or column of pixels: [first, last] in tile numbers.
+std::pair<int, int> tiles_around(int pixel, int reach) {
+  const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileSums::kTile)); };
+  return {tile_of(pixel - reach), tile_of(pixel + reach)};
+}
+
+}  // namespace
+
+void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tiles_x, const FilterTable& filter,
+                  float scale, Picture& picture) {
+  const int tiles_y = static_cast<int>(tiles.size()) / std::max(tiles_x, 1);
+  picture.rgb.assign(3 * static_cast<size_t>(picture.width()) * static_cast<size_t>(picture.height()), 0.0f);
+  tbb::parallel_for(0, picture.height(), [&](int row) {
+    const int y = picture.window.min.y + row;
+    const auto [ty0, ty1] = tiles_around(y, filter.y_reach());
+    for (int column = 0; column < picture.width(); ++column) {
+      const int x = picture.window.min.x + column;
+      const auto [tx0, tx1] = tiles_around(x, filter.x_reach());
+      float sum[4] = {0, 0, 0, 0};
+      // Row by row, left to right: the order of additions depends on the pixel alone.
+      for (int ty = std::max(ty0, first_tile.y); ty <= std::min(ty1, first_tile.y + tiles_y - 1); ++ty) {
+        for (int tx = std::max(tx0, first_tile.x); tx <= std::min(tx1, first_tile.x + tiles_x - 1); ++tx) {
+          const float* s = tiles[static_cast<size_t>((ty - first_tile.y) * tiles_x + tx - first_tile.x)].at(x, y);
+          for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
+        }
+      }
+      float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) + static_cast<size_t>(column))];
+      for (int c = 0; c < 3; ++c) out[c] = sum[3] != 0 ? std::max(0.0f, sum[c] / sum[3]) * scale : 0.0f;
+    }
+  });
+}
+
+}  // namespace whit

@@ -1,0 +1,73 @@
+// The film while rendering: tiles that add up samples in a fixed order, merged so that the picture has the
+// same bits for any number of threads, any order of tiles and any crop.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/base/vec.h"
+#include "core/batch/lanes.h"
+#include "core/plugin/filter.h"
+
+namespace whit {
+
+/// A pixel filter as a table over one quadrant, and the reach of it in whole pixels.
+class FilterTable {
+ public:
+  explicit FilterTable(const Filter& filter);
+  float x_radius() const { return x_radius_; }
+  float y_radius() const { return y_radius_; }
+  /// Pixels beyond a sample's own pixel that it may reach, in x and y.
+  int x_reach() const { return x_reach_; }
+  int y_reach() const { return y_reach_; }
+  /// Weight at an offset from a pixel's centre within the radii.
+  float weight(float x, float y) const {
+    const int i = std::min(static_cast<int>(std::abs(x) * x_to_table_), kSize - 1);
+    const int j = std::min(static_cast<int>(std::abs(y) * y_to_table_), kSize - 1);
+    return table_[static_cast<size_t>(j * kSize + i)];
+  }
+
+ private:
+  static constexpr int kSize = 64;
+  float x_radius_, y_radius_, x_to_table_, y_to_table_;
+  int x_reach_, y_reach_;
+  std::vector<float> table_;
+};
+
+/// Sums of one tile and a border around it as wide as the filter reaches. Tiles lie on a grid that is fixed
+/// to the full picture, so that a crop adds the same samples in the same order.
+class TileSums {
+ public:
+  static constexpr int kTile = 16;
+
+  TileSums(Vec2i tile, const FilterTable& filter);
+  /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
+  void add(float film_x, float film_y, const RGB& radiance);
+
+  /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
+  const float* at(int x, int y) const {
+    if (x < x0_ || y < y0_ || x >= x0_ + width_ || y >= y0_ + height_) return nullptr;
+    return &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(x - x0_))];
+  }
+
+ private:
+  const FilterTable* filter_;
+  int x0_, y0_, width_, height_;
+  std::vector<float> sums_;
+};
+
+/// The finished picture: linear RGB of the cropped window, row by row.
+struct Picture {
+  Vec2i resolution{0, 0};  ///< Of the full picture.
+  Box2i window;            ///< Rendered part: min inclusive, max exclusive.
+  std::vector<float> rgb;  ///< 3 per pixel of the window.
+  int width() const { return window.max.x - window.min.x; }
+  int height() const { return window.max.y - window.min.y; }
+};
+
+/// Divides sums by weights; negative results become 0; scaled by the film's scale.
+/// `tiles` is a grid (row-major, tiles_x wide) whose first tile is `first_tile`.
+void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tiles_x, const FilterTable& filter,
+                  float scale, Picture& picture);
+
+}  // namespace whit

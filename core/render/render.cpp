@@ -1,0 +1,177 @@
+#include "core/render/render.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <xmmintrin.h>
+#include <pmmintrin.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <mutex>
+
+#include "core/render/trace.h"
+
+namespace whit {
+namespace {
+
+/// Denormal numbers are flushed while a worker renders (they cost a hundred cycles each and mean nothing
+/// in a picture); the thread's own mode comes back afterwards.
+class FlushDenormals {
+ public:
+  FlushDenormals() : saved_(_mm_getcsr()) {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
+
+/// Camera samples traced together.
+constexpr int kChunk = 2048;
+
+class FilmRender {
+ public:
+  FilmRender(const Scene& scene, const RenderOptions& options)
+      : scene_(scene), options_(options), filter_(scene.filter()), workers_([&] { return Worker(scene); }) {}
+
+  RenderResult run() {
+    prepare();
+    const auto start = std::chrono::steady_clock::now();
+    const int threads = options_.threads > 0 ? options_.threads : tbb::this_task_arena::max_concurrency();
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                static_cast<size_t>(std::max(threads, 1)));
+    tbb::task_arena arena(threads);
+    arena.execute([&] {
+      tbb::parallel_for(
+          tbb::blocked_range<size_t>(0, tiles_.size(), 1), [&](const auto& range) {
+            for (size_t t = range.begin(); t != range.end(); ++t) render_tile(t);
+          },
+          tbb::simple_partitioner());
+      resolve_film(tiles_, first_tile_, tiles_x_, filter_, static_cast<float>(scene_.film().scale()), result_.picture);
+    });
+    for (const Worker& w : workers_) result_.statistics.add(w.statistics);
+    result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result_.threads = threads;
+    result_.complete = !stopped_;
+    return std::move(result_);
+  }
+
+ private:
+  /// Lays the tiles of the fixed grid over the pixels whose samples can reach the cropped picture.
+  void prepare() {
+    Picture& picture = result_.picture;
+    picture.resolution = scene_.camera().film.resolution;
+    double crop[4];
+    scene_.film().crop_window(crop);
+    picture.window = crop_pixels(picture.resolution, options_.crop_given ? options_.crop : crop);
+    const Vec2i reach(filter_.x_reach(), filter_.y_reach());
+    samples_ = Box2i(picture.window.min - reach, picture.window.max + reach);
+    const auto& bounds = scene_.integrator().pixel_bounds();
+    if (bounds.size() == 4) {
+      samples_.min.x = std::max(samples_.min.x, bounds[0]), samples_.max.x = std::min(samples_.max.x, bounds[1]);
+      samples_.min.y = std::max(samples_.min.y, bounds[2]), samples_.max.y = std::min(samples_.max.y, bounds[3]);
+    }
+    const auto tile_of = [](int p) { return p >= 0 ? p / TileSums::kTile : -((-p + TileSums::kTile - 1) / TileSums::kTile); };
+    if (samples_.max.x <= samples_.min.x || samples_.max.y <= samples_.min.y) return;
+    first_tile_ = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
+    tiles_x_ = tile_of(samples_.max.x - 1) - first_tile_.x + 1;
+    const int tiles_y = tile_of(samples_.max.y - 1) - first_tile_.y + 1;
+    tiles_.reserve(static_cast<size_t>(tiles_x_) * static_cast<size_t>(tiles_y));
+    for (int y = 0; y < tiles_y; ++y) {
+      for (int x = 0; x < tiles_x_; ++x) tiles_.emplace_back(first_tile_ + Vec2i(x, y), filter_);
+    }
+  }
+
+  void render_tile(size_t t) {
+    if (stopped_) return;
+    FlushDenormals flush;
+    Worker& worker = workers_.local();
+    const Vec2i tile = first_tile_ + Vec2i(static_cast<int>(t) % tiles_x_, static_cast<int>(t) / tiles_x_);
+    const int x0 = std::max(tile.x * TileSums::kTile, samples_.min.x);
+    const int x1 = std::min((tile.x + 1) * TileSums::kTile, samples_.max.x);
+    const int y0 = std::max(tile.y * TileSums::kTile, samples_.min.y);
+    const int y1 = std::min((tile.y + 1) * TileSums::kTile, samples_.max.y);
+    int32_t px[kChunk], py[kChunk];
+    uint32_t index[kChunk];
+    int n = 0;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
+        for (int s = 0; s < scene_.samples_per_pixel; ++s) {
+          px[n] = x, py[n] = y, index[n] = static_cast<uint32_t>(s);
+          if (++n == kChunk) render_samples(worker, tiles_[t], std::exchange(n, 0), px, py, index);
+        }
+      }
+    }
+    if (n > 0) render_samples(worker, tiles_[t], n, px, py, index);
+    report_progress();
+  }
+
+  void render_samples(Worker& worker, TileSums& sums, int n, const int32_t* px, const int32_t* py, const uint32_t* index) {
+    ArenaScope scope(worker.arena);
+    generate_camera_rays(worker, n, px, py, index);
+    trace_chunk(worker);
+    const SampleChunk& c = worker.chunk;
+    const float brightest = static_cast<float>(scene_.film().max_sample_luminance());
+    for (int i = 0; i < n; ++i) {
+      RGB l = c.radiance[i];
+      const float smallest = std::min({l.x, l.y, l.z}), sum = l.x + l.y + l.z;
+      if (!(smallest >= 0 && sum <= std::numeric_limits<float>::max())) {
+        worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
+        continue;
+      }
+      const float y = luminance(l);
+      if (y > brightest) l *= brightest / y;
+      sums.add(c.film_x[i], c.film_y[i], l * c.ray_weight[i]);
+    }
+  }
+
+  void report_progress() {
+    const size_t done = ++tiles_done_;
+    if (!options_.progress) return;
+    std::unique_lock lock(progress_mutex_, std::try_to_lock);
+    if (lock && !options_.progress(static_cast<double>(done) / static_cast<double>(tiles_.size()))) stopped_ = true;
+  }
+
+  const Scene& scene_;
+  const RenderOptions& options_;
+  FilterTable filter_;
+  tbb::enumerable_thread_specific<Worker> workers_;
+  Box2i samples_;
+  Vec2i first_tile_{0, 0};
+  int tiles_x_ = 0;
+  std::vector<TileSums> tiles_;
+  std::atomic<size_t> tiles_done_{0};
+  std::atomic<bool> stopped_{false};
+  std::mutex progress_mutex_;
+  RenderResult result_;
+};
+
+}  // namespace
+
+Box2i crop_pixels(const Vec2i& resolution, const double crop[4]) {
+  const auto edge = [](double f, int n) { return std::clamp(static_cast<int>(std::ceil(f * n)), 0, n); };
+  return {{edge(crop[0], resolution.x), edge(crop[2], resolution.y)},
+          {edge(crop[1], resolution.x), edge(crop[3], resolution.y)}};
+}
+
+RenderResult render(const Scene& scene, const RenderOptions& options) { return FilmRender(scene, options).run(); }
+
+RGB sample_radiance(const Scene& scene, Vec2i pixel, uint32_t sample) {
+  FlushDenormals flush;
+  Worker worker(scene);
+  const int32_t x = pixel.x, y = pixel.y;
+  generate_camera_rays(worker, 1, &x, &y, &sample);
+  trace_chunk(worker);
+  return worker.chunk.radiance[0];
+}
+
+}  // namespace whit

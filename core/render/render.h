@@ -1,0 +1,37 @@
+// Rendering a scene: tiles over threads, samples into the film.
+#pragma once
+
+#include <functional>
+
+#include "core/render/film_buffer.h"
+#include "core/render/statistics.h"
+#include "core/scene/scene.h"
+
+namespace whit {
+
+struct RenderOptions {
+  int threads = 0;             ///< 0: one per core.
+  bool crop_given = false;     ///< crop overrides the film's.
+  double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
+  /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
+  std::function<bool(double)> progress;
+};
+
+struct RenderResult {
+  Picture picture;
+  RenderStatistics statistics;
+  double seconds = 0;   ///< Of the render loop, wall clock.
+  int threads = 1;
+  bool complete = true; ///< False when progress() stopped it.
+};
+
+/// The pixels a render covers: the film's crop, or the one given; x1 and y1 exclusive.
+Box2i crop_pixels(const Vec2i& resolution, const double crop[4]);
+
+/// Renders. The picture has the same bits for any number of threads and any crop.
+RenderResult render(const Scene& scene, const RenderOptions& options);
+
+/// The radiance of one sample of one pixel, before camera weight and film: for --pixel and debugging.
+RGB sample_radiance(const Scene& scene, Vec2i pixel, uint32_t sample);
+
+}  // namespace whit

@@ -1,0 +1,24 @@
+// What a render did: counted per worker, added up at the end.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/vec.h"
+
+namespace whit {
+
+struct RenderStatistics {
+  int64_t camera_samples = 0;
+  int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, passing_rays = 0, shadow_rays = 0;
+  int64_t surface_points = 0, footprints = 0;
+
+  int64_t invalid_samples = 0;        ///< NaN, infinite or negative: left out of the picture.
+  Vec2i first_invalid_pixel{-1, -1};  ///< In picture order.
+  uint32_t first_invalid_sample = 0;
+
+  int64_t rays() const { return camera_rays + reflection_rays + refraction_rays + passing_rays + shadow_rays; }
+  void add(const RenderStatistics& o);
+  void note_invalid(Vec2i pixel, uint32_t sample);
+};
+
+}  // namespace whit

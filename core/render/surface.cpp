@@ -1,0 +1,370 @@
+#include "core/render/surface.h"
+
+#include "core/base/fastmath.h"
+#include "core/scene/bake.h"
+#include "core/scene/motion.h"
+
+namespace whit {
+namespace {
+
+/// gamma(n) = n eps / (1 - n eps): the bound on n accumulated rounding errors (PBR 3e, section 3.9.1).
+constexpr float gamma_bound(int n) {
+  constexpr float kHalfUlp = 0x1p-24f;
+  return static_cast<float>(n) * kHalfUlp / (1 - static_cast<float>(n) * kHalfUlp);
+}
+
+/// Geometric partial derivatives, which footprints need beside the shading ones.
+struct GeometricPartials {
+  Vec3Lanes dpdu, dpdv;
+};
+
+/// Three values per lane, one for each corner of its triangle.
+struct Corners {
+  Vec3Lanes a, b, c;
+  Corners(Arena& arena, int n) : a(arena.vec3(n)), b(arena.vec3(n)), c(arena.vec3(n)) {}
+  Corners() = default;
+};
+
+/// What is gathered from meshes, lane by lane, before the arithmetic that vectorises.
+struct TriangleLanes {
+  Corners p, n, s;
+  float *u0, *v0, *u1, *v1, *u2, *v2;
+  bool any_normals = false, any_tangents = false;
+};
+
+TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int first, int count, Arena& arena) {
+  TriangleLanes t;
+  t.p = Corners(arena, count);
+  t.u0 = arena.floats(count), t.v0 = arena.floats(count), t.u1 = arena.floats(count);
+  t.v1 = arena.floats(count), t.u2 = arena.floats(count), t.v2 = arena.floats(count);
+  for (int i = 0; i < count; ++i) {
+    const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
+    const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(h.prim[first + i])];
+    t.p.a.set(i, mesh.position(index[0]));
+    t.p.b.set(i, mesh.position(index[1]));
+    t.p.c.set(i, mesh.position(index[2]));
+    t.any_normals |= !mesh.normals.empty();
+    t.any_tangents |= !mesh.tangents.empty();
+    const bool has_uv = !mesh.uvs.empty();
+    const Vec2f a = has_uv ? mesh.uv(index[0]) : Vec2f(0, 0), b = has_uv ? mesh.uv(index[1]) : Vec2f(1, 0);
+    const Vec2f c = has_uv ? mesh.uv(index[2]) : Vec2f(1, 1);
+    t.u0[i] = a.x, t.v0[i] = a.y, t.u1[i] = b.x, t.v1[i] = b.y, t.u2[i] = c.x, t.v2[i] = c.y;
+  }
+  const auto gather_vectors = [&](Corners& to, bool tangents) {
+    to = Corners(arena, count);
+    for (int i = 0; i < count; ++i) {
+      const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
+      const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(h.prim[first + i])];
+      const bool has = tangents ? !mesh.tangents.empty() : !mesh.normals.empty();
+      const auto get = [&](uint32_t v) { return !has ? Vec3f(0, 0, 0) : tangents ? mesh.tangent(v) : mesh.normal(v); };
+      to.a.set(i, get(index[0]));
+      to.b.set(i, get(index[1]));
+      to.c.set(i, get(index[2]));
+    }
+  };
+  if (t.any_normals) gather_vectors(t.n, false);
+  if (t.any_tangents) gather_vectors(t.s, true);
+  return t;
+}
+
+/// Points, partial derivatives and the geometric normal of triangles.
+void triangle_geometry(const TriangleLanes& t, const ShadingBatch& s, const GeometricPartials& g,
+                       const float* bary_u, const float* bary_v) {
+  for_lanes(s.n, [&](int i) {
+    const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
+    const Vec3f p0 = t.p.a[i], p1 = t.p.b[i], p2 = t.p.c[i];
+    const auto mix = [&](float x, float y, float z) { return b0 * x + b1 * y + b2 * z; };
+    const auto bound = [&](float x, float y, float z) {
+      return gamma_bound(7) * (std::abs(b0 * x) + std::abs(b1 * y) + std::abs(b2 * z));
+    };
+    s.p.set(i, {mix(p0.x, p1.x, p2.x), mix(p0.y, p1.y, p2.y), mix(p0.z, p1.z, p2.z)});
+    s.p_error.set(i, {bound(p0.x, p1.x, p2.x), bound(p0.y, p1.y, p2.y), bound(p0.z, p1.z, p2.z)});
+    s.u[i] = mix(t.u0[i], t.u1[i], t.u2[i]);
+    s.v[i] = mix(t.v0[i], t.v1[i], t.v2[i]);
+    const Vec3f e02 = p0 - p2, e12 = p1 - p2;
+    const float du02 = t.u0[i] - t.u2[i], du12 = t.u1[i] - t.u2[i];
+    const float dv02 = t.v0[i] - t.v2[i], dv12 = t.v1[i] - t.v2[i];
+    const Vec3f n = normalize_any(cross(e02, e12));
+    // Where the texture coordinates span no area, any tangent frame serves.
+    const float det = du02 * dv12 - dv02 * du12;
+    const float inverse = det != 0 ? 1 / det : 0.0f;
+    Vec3f dpdu = (e02 * dv12 - e12 * dv02) * inverse, dpdv = (e12 * du02 - e02 * du12) * inverse;
+    const Vec3f area = cross(dpdu, dpdv);
+    const Frame frame = coordinate_system(n);
+    const bool usable = dot(area, area) > 0;
+    const auto pick = [&](float a, float b) { return usable ? a : b; };
+    dpdu = {pick(dpdu.x, frame.s.x), pick(dpdu.y, frame.s.y), pick(dpdu.z, frame.s.z)};
+    dpdv = {pick(dpdv.x, frame.t.x), pick(dpdv.y, frame.t.y), pick(dpdv.z, frame.t.z)};
+    g.dpdu.set(i, dpdu), g.dpdv.set(i, dpdv);
+    s.dpdu.set(i, dpdu), s.dpdv.set(i, dpdv);
+    const float flip = s.flips[i] ? -1.0f : 1.0f;
+    s.ng.set(i, n * flip);
+    s.ns.set(i, n * flip);
+  });
+}
+
+/// Interpolated normals and tangents, for lanes whose mesh has them; the geometric normal turns to their side.
+void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float* bary_u, const float* bary_v) {
+  for_lanes(s.n, [&](int i) {
+    const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
+    const Vec3f zero(0, 0, 0);
+    const Vec3f nsum = t.any_normals ? t.n.a[i] * b0 + t.n.b[i] * b1 + t.n.c[i] * b2 : zero;
+    const Vec3f tsum = t.any_tangents ? t.s.a[i] * b0 + t.s.b[i] * b1 + t.s.c[i] * b2 : zero;
+    const bool has_n = dot(nsum, nsum) > 0, has_t = dot(tsum, tsum) > 0;
+    const auto pick = [](bool c, const Vec3f& a, const Vec3f& b) {
+      return Vec3f(c ? a.x : b.x, c ? a.y : b.y, c ? a.z : b.z);
+    };
+    const float flip = s.flips[i] ? -1.0f : 1.0f;
+    // Before any flip: pbrt flips the finished shading normal.
+    const Vec3f ns = pick(has_n, normalize_any(nsum), s.ng[i] * flip);
+    Vec3f ss = pick(has_t, normalize_any(tsum), normalize_any(s.dpdu[i]));
+    const Vec3f side = cross(ss, ns);
+    const bool framed = dot(side, side) > 0;
+    const Frame frame = coordinate_system(ns);
+    const Vec3f ts = pick(framed, normalize_any(side), frame.t);
+    ss = pick(framed, cross(ts, ns), frame.s);
+    const bool shaded = has_n || has_t;
+    const Vec3f turned = ns * flip, ng = s.ng[i];
+    s.dpdu.set(i, pick(shaded, ss, s.dpdu[i]));
+    s.dpdv.set(i, pick(shaded, ts, s.dpdv[i]));
+    s.ns.set(i, pick(shaded, turned, s.ns[i]));
+    s.ng.set(i, pick(shaded && dot(ng, turned) < 0, -ng, ng));
+  });
+}
+
+/// Derivatives of the interpolated normal with respect to (u, v).
+void triangle_normal_derivatives(const TriangleLanes& t, const ShadingBatch& s) {
+  if (!t.any_normals) {
+    for_lanes(s.n, [&](int i) { s.dndu.set(i, {0, 0, 0}), s.dndv.set(i, {0, 0, 0}); });
+    return;
+  }
+  for_lanes(s.n, [&](int i) {
+    const float du02 = t.u0[i] - t.u2[i], du12 = t.u1[i] - t.u2[i];
+    const float dv02 = t.v0[i] - t.v2[i], dv12 = t.v1[i] - t.v2[i];
+    const float det = du02 * dv12 - dv02 * du12;
+    const float inverse = det != 0 ? 1 / det : 0.0f;
+    const Vec3f n02 = t.n.a[i] - t.n.c[i], n12 = t.n.b[i] - t.n.c[i];
+    s.dndu.set(i, (n02 * dv12 - n12 * dv02) * inverse);
+    s.dndv.set(i, (n12 * du02 - n02 * du12) * inverse);
+  });
+}
+
+void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
+                   const GeometricPartials& g, Arena& arena) {
+  ArenaScope scope(arena);
+  const TriangleLanes t = gather_triangles(scene, h, first, s.n, arena);
+  const float *bu = h.u + first, *bv = h.v + first;
+  triangle_geometry(t, s, g, bu, bv);
+  if (t.any_normals || t.any_tangents) triangle_shading(t, s, bu, bv);
+  if (s.dndu) triangle_normal_derivatives(t, s);
+}
+
+Vec3f to_float(const Vec3d& v) { return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
+
+/// The group's local space of a hit: render space itself for world geometry.
+Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
+  if (h.instance[i] < 0) return Mat4d();
+  const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
+  return interpolate_keys(instance.keys, h.time ? h.time[i] : 0).inverse();
+}
+
+void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const GeometricPartials& g) {
+  for (int i = 0; i < s.n; ++i) {
+    const AnalyticShape& shape = *scene.shapes[static_cast<size_t>(h.shape[first + i])].analytic;
+    Vec3d p = Vec3d(h.o[first + i]) + static_cast<double>(h.t[first + i]) * Vec3d(h.d[first + i]);
+    if (h.instance[first + i] >= 0) p = transform_point(render_to_local(scene, h, first + i), p);
+    const Mat4d& m = shape.object_to_scene();
+    const SurfacePoint point = shape.surface(transform_point(shape.scene_to_object(), p));
+    const Vec3d q = transform_point(m, point.p);
+    const auto error_of = [&](int c) {
+      const double object = std::abs(m[0][c]) * point.p_error.x + std::abs(m[1][c]) * point.p_error.y +
+                            std::abs(m[2][c]) * point.p_error.z;
+      return static_cast<float>(object) + gamma_bound(3) * static_cast<float>(std::abs(q[c]));
+    };
+    s.p.set(i, to_float(q));
+    s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
+    s.u[i] = static_cast<float>(point.u), s.v[i] = static_cast<float>(point.v);
+    const Vec3d dpdu = transform_vector(m, point.dpdu), dpdv = transform_vector(m, point.dpdv);
+    g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
+    s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
+    const Vec3d n = dpdu.cross(dpdv).normalized() * (s.flips[i] ? -1.0 : 1.0);
+    s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
+    if (s.dndu) {
+      // Derivatives of a direction: transformed like the normal, which they change to first order.
+      const Mat4d& to_object = shape.scene_to_object();
+      const auto normal_vector = [&](const Vec3d& v) {
+        return Vec3d(v.dot({to_object[0][0], to_object[0][1], to_object[0][2]}),
+                     v.dot({to_object[1][0], to_object[1][1], to_object[1][2]}),
+                     v.dot({to_object[2][0], to_object[2][1], to_object[2][2]}));
+      };
+      s.dndu.set(i, to_float(normal_vector(point.dndu)));
+      s.dndv.set(i, to_float(normal_vector(point.dndv)));
+    }
+  }
+}
+
+/// Position derivative and width of a cubic Bezier segment at w in [0,1].
+struct CurvePoint {
+  Vec3d tangent, normal;
+  double width;
+};
+
+CurvePoint evaluate_curve(const Curves& curves, uint32_t segment, double w) {
+  const float* c = &curves.control_points[16 * static_cast<size_t>(segment)];
+  const double a = 1 - w;
+  const double basis[4] = {a * a * a, 3 * a * a * w, 3 * a * w * w, w * w * w};
+  const double slope[3] = {3 * a * a, 6 * a * w, 3 * w * w};
+  CurvePoint out{{0, 0, 0}, {0, 0, 0}, 0};
+  for (int k = 0; k < 4; ++k) out.width += 2 * basis[k] * c[4 * k + 3];
+  for (int k = 0; k < 3; ++k) {
+    out.tangent += slope[k] * Vec3d(c[4 * k + 4] - c[4 * k], c[4 * k + 5] - c[4 * k + 1], c[4 * k + 6] - c[4 * k + 2]);
+  }
+  if (!curves.normals.empty()) {
+    const float* n = &curves.normals[12 * static_cast<size_t>(segment)];
+    for (int k = 0; k < 4; ++k) out.normal += basis[k] * Vec3d(n[3 * k], n[3 * k + 1], n[3 * k + 2]);
+  }
+  return out;
+}
+
+/// v rotated about a unit axis by an angle in radians (Rodrigues).
+Vec3d rotate_about(const Vec3d& v, const Vec3d& axis, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return v * c + axis.cross(v) * s + axis * (axis.dot(v) * (1 - c));
+}
+
+void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const GeometricPartials& g) {
+  for (int i = 0; i < s.n; ++i) {
+    const int lane = first + i;
+    const Curves& curves = *scene.shapes[static_cast<size_t>(h.shape[lane])].curves;
+    const Mat4d to_local = render_to_local(scene, h, lane);
+    const Vec3d o = transform_point(to_local, Vec3d(h.o[lane])), d = transform_vector(to_local, Vec3d(h.d[lane]));
+    const CurvePoint c = evaluate_curve(curves, h.prim[lane], h.u[lane]);
+    const float* range = &curves.u_range[2 * static_cast<size_t>(h.prim[lane])];
+    // Embree measures across the curve from -1 to 1.
+    const double v = 0.5 * (1 + static_cast<double>(h.v[lane]));
+    const Vec3d dpdu = c.tangent / std::max(1e-30, static_cast<double>(range[1] - range[0]));
+    const Vec3d across = curves.kind == CurveData::Kind::Ribbon ? c.normal : d;
+    Vec3d dpdv = across.cross(dpdu).normalized() * c.width;
+    if (curves.kind == CurveData::Kind::Cylinder) {
+      dpdv = rotate_about(dpdv, dpdu.normalized(), -(v - 0.5) * M_PI);
+    }
+    const Vec3f p = to_float(o + static_cast<double>(h.t[lane]) * d);
+    s.p.set(i, p);
+    // A curve stands for a tube: rays leave from outside of it (pbrt's bound, twice the width).
+    const float reach = static_cast<float>(2 * c.width);
+    s.p_error.set(i, {reach, reach, reach});
+    s.u[i] = range[0] + h.u[lane] * (range[1] - range[0]), s.v[i] = static_cast<float>(v);
+    g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
+    s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
+    const Vec3d n = dpdu.cross(dpdv).normalized() * (s.flips[i] ? -1.0 : 1.0);
+    s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
+    if (s.dndu) s.dndu.set(i, {0, 0, 0}), s.dndv.set(i, {0, 0, 0});
+  }
+}
+
+/// Takes the points of placed objects from their group's space to render space.
+void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch& s, const GeometricPartials& g) {
+  for (int i = 0; i < s.n; ++i) {
+    if (h.instance[i] < 0) continue;
+    const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
+    const Mat4d m = interpolate_keys(instance.keys, h.time ? h.time[i] : 0);
+    const Mat4d nm = instance.moving() ? normal_matrix(m) : instance.normal_matrix;
+    const Vec3f local = s.p[i], error = s.p_error[i];
+    const Vec3d p = transform_point(m, Vec3d(local));
+    const auto error_of = [&](int c) {
+      // The float matrix Embree used differs from ours by half a unit in the last place of each entry.
+      const double spread = std::abs(m[0][c]) * error.x + std::abs(m[1][c]) * error.y + std::abs(m[2][c]) * error.z;
+      const double rounding = std::abs(m[0][c] * local.x) + std::abs(m[1][c] * local.y) + std::abs(m[2][c] * local.z) +
+                              std::abs(m[3][c]);
+      return static_cast<float>(spread) + gamma_bound(4) * static_cast<float>(rounding);
+    };
+    s.p.set(i, to_float(p));
+    s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
+    for (const Vec3Lanes* v : {&s.dpdu, &s.dpdv, &g.dpdu, &g.dpdv}) v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
+    // The normal keeps the side it has on the object (pbrt does not flip for the instance's own handedness).
+    const Vec3d ng = transform_vector(nm, Vec3d(s.ng[i])).normalized();
+    const Vec3d ns = transform_vector(nm, Vec3d(s.ns[i])).normalized();
+    s.ng.set(i, to_float(ng));
+    s.ns.set(i, to_float(ns.dot(ng) < 0 ? -ns : ns));
+    if (s.dndu) {
+      for (const Vec3Lanes* v : {&s.dndu, &s.dndv}) v->set(i, to_float(transform_vector(nm, Vec3d((*v)[i]))));
+    }
+  }
+}
+
+/// The axis pair that a tangent plane projects onto best, and the 2x2 solve for a derivative of (u, v).
+void solve_uv(const Vec3f& n, const Vec3f& dpdu, const Vec3f& dpdv, const Vec3f& dp, float& du, float& dv) {
+  const float ax = std::abs(n.x), ay = std::abs(n.y), az = std::abs(n.z);
+  const bool drop_x = ax > ay && ax > az, drop_y = !drop_x && ay > az;
+  const auto first = [&](const Vec3f& v) { return drop_x ? v.y : v.x; };
+  const auto second = [&](const Vec3f& v) { return drop_x || drop_y ? v.z : v.y; };
+  const float a = first(dpdu), b = first(dpdv), c = second(dpdu), d = second(dpdv);
+  const float det = a * d - b * c;
+  const float inverse = det != 0 ? 1 / det : 0.0f;
+  const float u = (d * first(dp) - b * second(dp)) * inverse, v = (a * second(dp) - c * first(dp)) * inverse;
+  du = std::abs(u) < 1e30f ? u : 0.0f;
+  dv = std::abs(v) < 1e30f ? v : 0.0f;
+}
+
+/// Footprints: where the differential rays meet the tangent plane (PBR 3e, section 10.1.1).
+void compute_footprints(const SurfaceHits& h, const ShadingBatch& s, const GeometricPartials& g) {
+  for_lanes(s.n, [&](int i) {
+    const Vec3f n = s.ng[i], p = s.p[i];
+    const auto meet = [&](const Vec3f& o, const Vec3f& d) {
+      const float along = dot(n, d);
+      const float t = along != 0 ? dot(n, p - o) / along : 0.0f;
+      return o + d * t - p;
+    };
+    Vec3f dpdx = meet(h.rx_o[i], h.rx_d[i]), dpdy = meet(h.ry_o[i], h.ry_d[i]);
+    const bool good = std::abs(dot(n, h.rx_d[i])) > 0 && std::abs(dot(n, h.ry_d[i])) > 0;
+    const float keep = good ? 1.0f : 0.0f;
+    dpdx = dpdx * keep, dpdy = dpdy * keep;
+    s.dpdx.set(i, dpdx), s.dpdy.set(i, dpdy);
+    solve_uv(n, g.dpdu[i], g.dpdv[i], dpdx, s.dudx[i], s.dvdx[i]);
+    solve_uv(n, g.dpdu[i], g.dpdv[i], dpdy, s.dudy[i], s.dvdy[i]);
+  });
+}
+
+ShadingBatch allocate(const SurfaceHits& h, Arena& arena) {
+  ShadingBatch s;
+  s.n = h.n;
+  s.arena = &arena;
+  s.p = arena.vec3(h.n), s.p_error = arena.vec3(h.n), s.wo = arena.vec3(h.n);
+  s.ng = arena.vec3(h.n), s.ns = arena.vec3(h.n), s.dpdu = arena.vec3(h.n), s.dpdv = arena.vec3(h.n);
+  s.u = arena.floats(h.n), s.v = arena.floats(h.n);
+  s.flips = arena.alloc<uint8_t>(h.n);
+  if (h.rx_o) {
+    s.dndu = arena.vec3(h.n), s.dndv = arena.vec3(h.n);
+    s.dudx = arena.floats(h.n), s.dvdx = arena.floats(h.n), s.dudy = arena.floats(h.n), s.dvdy = arena.floats(h.n);
+    s.dpdx = arena.vec3(h.n), s.dpdy = arena.vec3(h.n);
+  }
+  return s;
+}
+
+}  // namespace
+
+ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& arena) {
+  const ShadingBatch s = allocate(h, arena);
+  const GeometricPartials g{arena.vec3(h.n), arena.vec3(h.n)};
+  for (int i = 0; i < h.n; ++i) s.flips[i] = scene.shapes[static_cast<size_t>(h.shape[i])].flips;
+  for_lanes(h.n, [&](int i) { s.wo.set(i, -h.d[i]); });
+  for (int first = 0, last; first < h.n; first = last) {
+    const SceneShape& shape = scene.shapes[static_cast<size_t>(h.shape[first])];
+    last = first + 1;
+    while (last < h.n && scene.shapes[static_cast<size_t>(h.shape[last])].sort_key == shape.sort_key) ++last;
+    const ShadingBatch run = s.range(first, last - first);
+    const GeometricPartials partials{g.dpdu.from(first), g.dpdv.from(first)};
+    if (shape.mesh) {
+      mesh_surfaces(scene, h, first, run, partials, arena);
+    } else if (shape.analytic) {
+      analytic_surfaces(scene, h, first, run, partials);
+    } else {
+      curve_surfaces(scene, h, first, run, partials);
+    }
+  }
+  if (!scene.instances.empty()) place_surfaces(scene, h, s, g);
+  if (h.rx_o) compute_footprints(h, s, g);
+  return s;
+}
+
+}  // namespace whit

@@ -1,0 +1,171 @@
+#include "core/render/trace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/fastmath.h"
+#include "core/render/round.h"
+#include "core/scene/motion.h"
+
+namespace whit {
+namespace {
+
+SampleChunk allocate_chunk(Worker& worker, int n) {
+  Arena& arena = worker.arena;
+  SampleChunk c;
+  c.n = n;
+  c.px = arena.alloc<int32_t>(n), c.py = arena.alloc<int32_t>(n), c.index = arena.alloc<uint32_t>(n);
+  c.film_x = arena.floats(n), c.film_y = arena.floats(n);
+  if (worker.scene.plan.needs_time) c.time = arena.floats(n);
+  c.ray_weight = arena.floats(n);
+  c.radiance = arena.rgb(n);
+  for_lanes(n, [&](int i) { c.radiance.r[i] = c.radiance.g[i] = c.radiance.b[i] = 0; });
+  return c;
+}
+
+/// Times in [0,1] over the transform times, from the shutter's interval in seconds.
+void sample_times(Worker& worker, const SampleKeys& keys) {
+  const Scene& scene = worker.scene;
+  scene.sampler().get_1d(keys, worker.layout.time, worker.chunk.time);
+  const float open = scene.camera().shutter_open, length = scene.camera().shutter_close - open;
+  const float start = static_cast<float>(scene.time_start);
+  const float span = static_cast<float>(scene.time_end - scene.time_start);
+  const float inverse = span != 0 ? 1 / span : 0.0f;
+  float* time = worker.chunk.time;
+  for_lanes(keys.n, [&](int i) { time[i] = clamp_to((open + length * time[i] - start) * inverse, 0.0f, 1.0f); });
+}
+
+/// Takes camera-space rays to render space; a moving camera has its own matrix for every ray.
+void place_rays(const Scene& scene, const float* time, const CameraRays& rays) {
+  const auto apply = [&](const Mat4d& m, int i) {
+    const auto point = [&](const Vec3Lanes& p) { p.set(i, Vec3f(transform_point(m, Vec3d(p[i])))); };
+    // Divided by the camera's own scale, directions stay unit vectors and differentials keep their ratio.
+    const double scale = transform_vector(m, Vec3d(rays.d[i])).length();
+    const auto vector = [&](const Vec3Lanes& v) { v.set(i, Vec3f(transform_vector(m, Vec3d(v[i])) / scale)); };
+    point(rays.o), vector(rays.rx_d ? rays.rx_d : rays.d);
+    if (!rays.rx_d) return;
+    point(rays.rx_o), point(rays.ry_o), vector(rays.ry_d), vector(rays.d);
+  };
+  for (int i = 0; i < rays.n; ++i) apply(interpolate_keys(scene.camera_keys, time ? time[i] : 0), i);
+}
+
+/// The same for a camera that stands still: one float matrix for all.
+void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
+  float m[4][3];
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 3; ++c) m[r][c] = static_cast<float>(camera[r][c]);
+  }
+  const auto rotate = [&m](const Vec3f& v) {
+    return Vec3f(v.x * m[0][0] + v.y * m[1][0] + v.z * m[2][0], v.x * m[0][1] + v.y * m[1][1] + v.z * m[2][1],
+                 v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]);
+  };
+  const Vec3f move(m[3][0], m[3][1], m[3][2]);
+  const bool differentials = static_cast<bool>(rays.rx_d);
+  for_lanes(rays.n, [&](int i) {
+    rays.o.set(i, rotate(rays.o[i]) + move);
+    const Vec3f d = rotate(rays.d[i]);
+    rays.d.set(i, d * (1 / length(d)));
+  });
+  if (!differentials) return;
+  // rays.d has been normalised, so the camera's scale is measured on one axis-independent quantity: the
+  // differential directions keep their own lengths relative to unit camera-space vectors.
+  const float scale = 1 / static_cast<float>(std::cbrt(std::abs(
+                              Vec3d(camera[0][0], camera[0][1], camera[0][2])
+                                  .dot(Vec3d(camera[1][0], camera[1][1], camera[1][2])
+                                           .cross(Vec3d(camera[2][0], camera[2][1], camera[2][2]))))));
+  for_lanes(rays.n, [&](int i) {
+    rays.rx_o.set(i, rotate(rays.rx_o[i]) + move);
+    rays.ry_o.set(i, rotate(rays.ry_o[i]) + move);
+    rays.rx_d.set(i, rotate(rays.rx_d[i]) * scale);
+    rays.ry_d.set(i, rotate(rays.ry_d[i]) * scale);
+  });
+}
+
+/// pbrt shrinks footprints by 1/sqrt(samples per pixel): a sample stands for its share of the pixel.
+void scale_differentials(const CameraRays& rays, int samples_per_pixel) {
+  const float s = 1 / std::sqrt(static_cast<float>(samples_per_pixel));
+  for_lanes(rays.n, [&](int i) {
+    const Vec3f o = rays.o[i], d = rays.d[i];
+    rays.rx_o.set(i, o + (rays.rx_o[i] - o) * s);
+    rays.ry_o.set(i, o + (rays.ry_o[i] - o) * s);
+    rays.rx_d.set(i, d + (rays.rx_d[i] - d) * s);
+    rays.ry_d.set(i, d + (rays.ry_d[i] - d) * s);
+  });
+}
+
+}  // namespace
+
+void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_t* py, const uint32_t* index) {
+  const Scene& scene = worker.scene;
+  worker.chunk = allocate_chunk(worker, n);
+  SampleChunk& c = worker.chunk;
+  uint32_t* stream = worker.arena.alloc<uint32_t>(n);
+  for_lanes(n, [&](int i) { c.px[i] = px[i], c.py[i] = py[i], c.index[i] = index[i], stream[i] = 0; });
+  const SampleKeys keys{n, c.px, c.py, c.index, stream};
+  scene.sampler().pixel_offset(keys, c.film_x, c.film_y);
+  for_lanes(n, [&](int i) {
+    c.film_x[i] += static_cast<float>(c.px[i]);
+    c.film_y[i] += static_cast<float>(c.py[i]);
+  });
+  if (c.time) sample_times(worker, keys);
+
+  RayList& rays = worker.level(0);
+  rays.clear();
+  rays.reserve(n);
+  rays.n = n;
+  CameraRays out;
+  out.n = n;
+  out.film_x = c.film_x, out.film_y = c.film_y;
+  if (scene.plan.needs_lens) {
+    float *u = worker.arena.floats(n), *v = worker.arena.floats(n);
+    scene.sampler().get_2d(keys, worker.layout.lens, u, v);
+    out.lens_u = u, out.lens_v = v;
+  }
+  out.o = rays.o, out.d = rays.d, out.weight = c.ray_weight;
+  out.rx_o = rays.rx_o, out.rx_d = rays.rx_d, out.ry_o = rays.ry_o, out.ry_d = rays.ry_d;
+  scene.camera().generate(out);
+  if (scene.camera_keys.size() == 1) {
+    place_rays_still(scene.camera_keys.front(), out);
+  } else {
+    place_rays(scene, c.time, out);
+  }
+  if (out.rx_o) scale_differentials(out, scene.samples_per_pixel);
+  for_lanes(n, [&](int i) {
+    rays.throughput.set(i, RGB(1.0f));
+    rays.slot[i] = i;
+    rays.stream[i] = 0;
+  });
+  worker.statistics.camera_samples += n;
+}
+
+void trace_chunk(Worker& worker) {
+  const Integrator& integrator = worker.scene.integrator();
+  // Depth first over groups of samples: a group ends at a sample's border, so that the order in which a
+  // sample's rays are summed never depends on its neighbours.
+  std::vector<Worker::Cursor>& stack = worker.cursors;
+  stack.assign(1, {0, 0});
+  while (!stack.empty()) {
+    const int depth = stack.back().depth, begin = stack.back().next;
+    const RayList& rays = worker.level(depth);
+    if (begin == rays.n) {
+      stack.pop_back();
+      continue;
+    }
+    int end = std::min(begin + kBatch, rays.n);
+    while (end < rays.n && end > begin && rays.slot[end] == rays.slot[end - 1]) --end;
+    if (end == begin) {  // One sample has more rays than a batch holds.
+      end = begin + 1;
+      while (end < rays.n && rays.slot[end] == rays.slot[begin]) ++end;
+    }
+    stack.back().next = end;
+    worker.level(depth + 1).clear();
+    for (int first = begin; first < end; first += kBatch) {
+      Round round(worker, depth, first, std::min(kBatch, end - first));
+      integrator.shade(round);
+      round.deliver();
+    }
+    if (worker.level(depth + 1).n > 0) stack.push_back({depth + 1, 0});
+  }
+}
+
+}  // namespace whit

@@ -1,0 +1,18 @@
+// From camera samples to radiances: the depth-by-depth loop over batches of rays.
+#pragma once
+
+#include "core/render/worker.h"
+
+namespace whit {
+
+/// Rays of a batch at most: what the stages' arrays of a batch take stays within a worker's L2 cache.
+inline constexpr int kBatch = 1024;
+
+/// Fills worker.chunk with the camera samples of `n` (pixel, index) pairs: film positions, times, and the
+/// rays of depth 0.
+void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_t* py, const uint32_t* index);
+
+/// Traces the chunk's rays until none is left; worker.chunk.radiance holds the result.
+void trace_chunk(Worker& worker);
+
+}  // namespace whit

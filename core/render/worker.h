@@ -1,0 +1,71 @@
+// One worker's state: its scratch memory, the camera samples of its chunk, and the rays waiting at each depth.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "core/batch/arena.h"
+#include "core/batch/lobe_eval.h"
+#include "core/render/ray_list.h"
+#include "core/render/statistics.h"
+#include "core/scene/scene.h"
+
+namespace whit {
+
+/// Which sample dimension serves what. Dimensions exist only for live effects.
+struct DimensionLayout {
+  int time = -1;        ///< One dimension; -1 when nothing moves.
+  int lens = -1;        ///< Two dimensions; -1 for a pinhole.
+  int first_bounce = 2; ///< Of the lights at the first surface.
+  int per_bounce = 0;   ///< The lights' dimensions, then one for each specular lobe choice.
+
+  explicit DimensionLayout(const Scene& scene);
+  int of_light(int depth, int offset) const { return first_bounce + depth * per_bounce + offset; }
+  int of_reflection(int depth) const { return first_bounce + (depth + 1) * per_bounce - 2; }
+  int of_refraction(int depth) const { return first_bounce + (depth + 1) * per_bounce - 1; }
+};
+
+/// Camera samples that are traced together; index = slot. Each ends as one radiance.
+struct SampleChunk {
+  int n = 0;
+  int32_t *px = nullptr, *py = nullptr;
+  uint32_t* index = nullptr;
+  float *film_x = nullptr, *film_y = nullptr;
+  float* time = nullptr;        ///< In [0,1] over the transform times; null when nothing moves.
+  float* ray_weight = nullptr;  ///< Of the camera.
+  RGBLanes radiance;
+};
+
+/// Points of one material, contiguous in a round's batch.
+struct MaterialRun {
+  ShadingBatch points;
+  LobeSet lobes;
+  LobeFrame frame;
+  int first = 0;
+  bool scatters = false, mirrors = false, refracts = false;  ///< Which kinds of lobes it has.
+};
+
+/// Everything a worker thread needs and no other may touch.
+class Worker {
+ public:
+  explicit Worker(const Scene& of) : scene(of), layout(of) {}
+
+  const Scene& scene;
+  const DimensionLayout layout;
+  Arena arena;
+  SampleChunk chunk;
+  RenderStatistics statistics;
+  struct Cursor {
+    int depth, next;
+  };
+  std::vector<Cursor> cursors;    ///< Of trace_chunk().
+  std::vector<MaterialRun> runs;  ///< Of the current round; kept for its memory.
+
+  /// Rays waiting for the round of a depth.
+  RayList& level(int depth);
+
+ private:
+  std::deque<RayList> levels_;  ///< A deque: references stay good while it grows.
+};
+
+}  // namespace whit

@@ -1,0 +1,56 @@
+#include "core/scene/alpha.h"
+
+namespace whit {
+namespace {
+
+/// Evaluates the two alpha textures at one point, without footprint: bilinear at full resolution, as pbrt.
+class TexturedAlpha final : public AlphaTest {
+ public:
+  TexturedAlpha(const SceneShape& geometry, const Shape& shape) : geometry_(geometry), shape_(shape) {}
+
+  bool cut(uint32_t prim, float u, float v, const Vec3f& p, bool shadow_ray) const override {
+    thread_local Arena arena;
+    ArenaScope scope(arena);
+    Vec2f uv(u, v);
+    if (geometry_.mesh) uv = mesh_uv(prim, u, v);
+    if (geometry_.analytic) {
+      const SurfacePoint s = geometry_.analytic->surface(transform_point(geometry_.analytic->scene_to_object(), Vec3d(p)));
+      uv = Vec2f(static_cast<float>(s.u), static_cast<float>(s.v));
+    }
+    ShadingBatch point;
+    point.n = 1;
+    point.arena = &arena;
+    point.p = arena.vec3(1);
+    point.p.set(0, p);
+    point.u = &uv.x, point.v = &uv.y;
+    if (value(shape_.alpha, point) == 0) return true;
+    return shadow_ray && value(shape_.shadow_alpha, point) == 0;
+  }
+
+ private:
+  static float value(const Tex<float>& tex, const ShadingBatch& point) {
+    return tex.is_constant() ? tex.value() : tex(point)[0];
+  }
+  Vec2f mesh_uv(uint32_t prim, float u, float v) const {
+    const Mesh& mesh = *geometry_.mesh;
+    Vec2f a(0, 0), b(1, 0), c(1, 1);
+    if (!mesh.uvs.empty()) {
+      a = mesh.uv(mesh.indices[3 * prim]), b = mesh.uv(mesh.indices[3 * prim + 1]);
+      c = mesh.uv(mesh.indices[3 * prim + 2]);
+    }
+    return a * (1 - u - v) + b * u + c * v;
+  }
+
+  SceneShape geometry_;
+  const Shape& shape_;
+};
+
+}  // namespace
+
+std::unique_ptr<AlphaTest> make_alpha_test(const SceneShape& geometry, const Shape& shape) {
+  const bool whole = shape.alpha.is_constant() && shape.shadow_alpha.is_constant() && shape.shadow_alpha.value() != 0;
+  if (whole) return nullptr;
+  return std::make_unique<TexturedAlpha>(geometry, shape);
+}
+
+}  // namespace whit

@@ -1,0 +1,103 @@
+#include "core/scene/bake.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace whit {
+namespace {
+
+Vec3d point_of(const std::span<const double>& flat, size_t i) { return {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]}; }
+
+void append(std::vector<float>& to, const Vec3d& v) {
+  to.push_back(static_cast<float>(v.x));
+  to.push_back(static_cast<float>(v.y));
+  to.push_back(static_cast<float>(v.z));
+}
+
+bool has_area(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
+  if (a == b || b == c || a == c) return false;
+  // In double, so that a small triangle's area does not underflow.
+  const Vec3d p(mesh.position(a)), q(mesh.position(b)), r(mesh.position(c));
+  return (q - p).cross(r - p).length2() > 0;
+}
+
+}  // namespace
+
+Mat4d normal_matrix(const Mat4d& m) {
+  Mat4d linear = m;
+  linear[3][0] = linear[3][1] = linear[3][2] = 0;
+  Mat4d out = linear.inverse().transposed();
+  double largest = 0;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(out[r][c]));
+  }
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) out[r][c] /= largest;
+  }
+  return out;
+}
+
+Box3d mesh_bounds(const MeshData& data, const Mat4d& m) {
+  Box3d box;
+  for (size_t i = 0; i < data.positions.size() / 3; ++i) box.extendBy(transform_point(m, point_of(data.positions, i)));
+  return box;
+}
+
+std::unique_ptr<Mesh> bake_mesh(const MeshData& data, const Mat4d& object_to_group, size_t& degenerate) {
+  auto mesh = std::make_unique<Mesh>();
+  const size_t vertices = data.positions.size() / 3;
+  mesh->positions.reserve(3 * vertices + 1);
+  for (size_t i = 0; i < vertices; ++i) {
+    append(mesh->positions, transform_point(object_to_group, point_of(data.positions, i)));
+  }
+  mesh->positions.push_back(0);
+  if (!data.normals.empty()) {
+    const Mat4d n = normal_matrix(object_to_group);
+    mesh->normals.reserve(data.normals.size());
+    for (size_t i = 0; i < vertices; ++i) {
+      append(mesh->normals,
+             transform_vector(n, {data.normals[3 * i], data.normals[3 * i + 1], data.normals[3 * i + 2]}));
+    }
+  }
+  if (!data.tangents.empty()) {
+    mesh->tangents.reserve(data.tangents.size());
+    for (size_t i = 0; i < vertices; ++i) {
+      append(mesh->tangents, transform_vector(object_to_group, {data.tangents[3 * i], data.tangents[3 * i + 1],
+                                                                data.tangents[3 * i + 2]}));
+    }
+  }
+  mesh->uvs = data.uvs;
+  degenerate = 0;
+  mesh->indices.reserve(data.indices.size());
+  for (size_t t = 0; t + 2 < data.indices.size(); t += 3) {
+    const uint32_t a = data.indices[t], b = data.indices[t + 1], c = data.indices[t + 2];
+    if (!has_area(*mesh, a, b, c)) {
+      ++degenerate;
+      continue;
+    }
+    mesh->indices.insert(mesh->indices.end(), {a, b, c});
+  }
+  return mesh;
+}
+
+std::unique_ptr<Curves> bake_curves(const CurveData& data, const Mat4d& object_to_group) {
+  auto curves = std::make_unique<Curves>();
+  curves->kind = data.kind;
+  curves->u_range = data.u_range;
+  const Mat4d& m = object_to_group;
+  const double volume = std::abs(Vec3d(m[0][0], m[0][1], m[0][2])
+                                     .dot(Vec3d(m[1][0], m[1][1], m[1][2]).cross(Vec3d(m[2][0], m[2][1], m[2][2]))));
+  const double width_scale = std::cbrt(volume);
+  const size_t points = data.control_points.size() / 3;
+  for (size_t i = 0; i < points; ++i) {
+    append(curves->control_points, transform_point(m, point_of(data.control_points, i)));
+    curves->control_points.push_back(static_cast<float>(0.5 * width_scale * data.widths[i]));
+  }
+  const Mat4d n = normal_matrix(m);
+  for (size_t i = 0; i + 2 < data.normals.size(); i += 3) {
+    append(curves->normals, transform_vector(n, {data.normals[i], data.normals[i + 1], data.normals[i + 2]}));
+  }
+  return curves;
+}
+
+}  // namespace whit

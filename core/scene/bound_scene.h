@@ -1,0 +1,53 @@
+// A scene whose statements have become plugins with their parameters bound and checked: cheap, nothing read yet.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/plugin/camera.h"
+#include "core/plugin/film.h"
+#include "core/plugin/filter.h"
+#include "core/plugin/integrator.h"
+#include "core/plugin/light.h"
+#include "core/plugin/material.h"
+#include "core/plugin/sampler.h"
+#include "core/plugin/shape.h"
+#include "parser/scene_description.h"
+
+namespace whit {
+
+/// A plugin made by a statement, and the textures (indices into SceneDescription::textures) it refers to.
+template <class T>
+struct Bound {
+  std::shared_ptr<T> plugin;  ///< Null when the statement is unusable (reported).
+  SourcePos where;
+  std::vector<int> textures;
+};
+
+struct BoundScene {
+  const SceneDescription* description = nullptr;
+  Bound<Camera> camera;
+  Bound<Film> film;
+  Bound<Filter> filter;
+  Bound<Sampler> sampler;
+  Bound<Integrator> integrator;
+  std::vector<Bound<Plugin>> textures;  ///< Texture<float> or Texture<RGB>, by TextureDescription::spectrum.
+  std::vector<Bound<Material>> materials;
+  std::vector<Bound<Light>> lights;
+  std::vector<Bound<AreaLight>> area_lights;
+  std::vector<Bound<Shape>> shapes;
+  /// Index into materials of each shape; beyond the description's for shapes that override parameters.
+  std::vector<int> shape_material;
+};
+
+/// The place of the i-th value of a parameter; from parser/lexer.h.
+using ValuePosition = std::function<SourcePos(const Parameter&, size_t)>;
+
+/// Makes and binds the plugins of every statement, live or not, so that every mistake is found. Problems go
+/// to `diagnostics`; with errors, the plugins concerned are null and the rest is usable.
+/// `description` must outlive the result (large lists stay in it).
+BoundScene bind_scene(const SceneDescription& description, const ValuePosition& value_position,
+                      Diagnostics& diagnostics);
+
+}  // namespace whit

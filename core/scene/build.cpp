@@ -1,0 +1,420 @@
+// Building: the only bridge from what a scene file says to live objects.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/scene/alpha.h"
+#include "core/scene/bake.h"
+#include "core/scene/motion.h"
+#include "core/scene/scene.h"
+
+namespace whit {
+namespace {
+
+/// A mesh or curves between reading and baking.
+struct LoadedShape {
+  size_t description = 0;  ///< Index into SceneDescription::shapes.
+  MeshData mesh;
+  CurveData curves;
+  Box3d bounds;            ///< In the group's own world coordinates, double.
+};
+
+/// A group of shapes that share a space: the world, an object definition, or one moving shape.
+struct Group {
+  std::vector<LoadedShape> shapes;
+  RenderSpace space;
+  Box3d bounds;
+  int accel_group = 0;
+  bool moving_shape = false;  ///< Holds one shape in object space that moves by its own transform.
+};
+
+/// The power of two that brings `radius` to between 64 and 128, where floats and Embree are at ease.
+double sane_scale(double radius) {
+  if (!(radius > 0) || !std::isfinite(radius)) return 1;
+  return std::ldexp(1.0, 6 - std::ilogb(radius));
+}
+
+Affine to_affine(const Mat4d& m) {
+  Affine a;
+  for (int r = 0; r < 4; ++r) {
+    for (int c = 0; c < 3; ++c) a.m[3 * r + c] = static_cast<float>(m[r][c]);
+  }
+  return a;
+}
+
+class Builder {
+ public:
+  Builder(BoundScene bound, EffectPlan plan, const BuildOptions& options, TextureStore& textures, Diagnostics& diagnostics)
+      : options_(options), textures_(textures), diagnostics_(diagnostics), scene_(std::make_unique<Scene>()) {
+    scene_->bound = std::move(bound);
+    scene_->plan = std::move(plan);
+  }
+
+  std::unique_ptr<Scene> run() {
+    if (!options_complete()) return nullptr;
+    scene_->accel = std::make_unique<Accel>(AccelOptions{options_.robust_traversal});
+    prepare_sampling();
+    load_groups();
+    choose_world_space();
+    prepare_materials();
+    bake_groups();
+    place_instances();
+    prepare_lights();
+    prepare_camera();
+    const std::string problem = scene_->accel->build();
+    if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
+    if (diagnostics_.has_errors() && !options_.keep_going) return nullptr;
+    return std::move(scene_);
+  }
+
+ private:
+  const SceneDescription& description() const { return *scene_->bound.description; }
+  const TransformPair& transform(int i) const { return description().transforms[static_cast<size_t>(i)]; }
+
+  bool options_complete() const {
+    const BoundScene& b = scene_->bound;
+    return b.camera.plugin && b.film.plugin && b.filter.plugin && b.sampler.plugin && b.integrator.plugin;
+  }
+
+  PrepareContext context(SourcePos where) {
+    PrepareContext ctx;
+    ctx.diagnostics = &diagnostics_;
+    ctx.statement = where;
+    ctx.textures = &textures_;
+    ctx.space = scene_->space;
+    ctx.scene_radius = scene_radius_;
+    ctx.samples_per_pixel = scene_->samples_per_pixel;
+    return ctx;
+  }
+
+  void prepare_sampling() {
+    Sampler& sampler = *scene_->bound.sampler.plugin;
+    sampler.seed = options_.seed;
+    if (options_.quick) {
+      sampler.set_samples_per_pixel(1);
+    } else if (options_.samples_per_pixel > 0) {
+      sampler.set_samples_per_pixel(options_.samples_per_pixel);
+    }
+    scene_->samples_per_pixel = sampler.samples_per_pixel();
+    scene_->time_start = description().time_start;
+    scene_->time_end = description().time_end;
+  }
+
+  // ---- Geometry ----
+
+  /// Reads the live shapes into their groups: 0 the world, then one per live object, then moving shapes.
+  void load_groups() {
+    groups_.resize(1 + description().objects.size());
+    for (size_t i = 0; i < description().shapes.size(); ++i) {
+      if (!scene_->plan.shape_live[i]) continue;
+      const ShapeDescription& d = description().shapes[i];
+      const bool moves = transform(d.transform).animated();
+      if (moves) {
+        moving_[d.object].push_back(groups_.size());
+        groups_.emplace_back().moving_shape = true;
+      }
+      load_shape(i, moves ? groups_.back() : groups_[static_cast<size_t>(d.object + 1)]);
+    }
+  }
+
+  void load_shape(size_t i, Group& group) {
+    const ShapeDescription& d = description().shapes[i];
+    Shape& shape = *scene_->bound.shapes[i].plugin;
+    const Mat4d to_world = group.moving_shape ? Mat4d() : transform(d.transform).start;
+    LoadedShape loaded;
+    loaded.description = i;
+    if (!shape.prepare(context(d.where))) return;
+    if (auto* mesh = dynamic_cast<MeshShape*>(&shape)) {
+      if (!mesh->build_mesh(context(d.where), loaded.mesh)) return;
+      loaded.bounds = mesh_bounds(loaded.mesh, to_world);
+    } else if (auto* curves = dynamic_cast<CurveShape*>(&shape)) {
+      if (!curves->build_curves(context(d.where), loaded.curves)) return;
+      MeshData points;
+      points.positions = loaded.curves.control_points;
+      loaded.bounds = mesh_bounds(points, to_world);
+    } else if (auto* analytic = dynamic_cast<AnalyticShape*>(&shape)) {
+      const Box3d box = analytic->object_bounds();
+      for (int c = 0; c < 8; ++c) {
+        loaded.bounds.extendBy(transform_point(to_world, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
+                                                          c & 4 ? box.max.z : box.min.z}));
+      }
+    }
+    if (loaded.bounds.isEmpty()) return;
+    group.bounds.extendBy(loaded.bounds);
+    group.shapes.push_back(std::move(loaded));
+  }
+
+  /// Render space stands at the camera; object groups stand at their own centres.
+  void choose_world_space() {
+    const Mat4d camera_to_world = transform(description().camera_transform).start.inverse();
+    scene_->space.origin = camera_to_world.translation();
+    double radius = 0;
+    const auto include = [&](const Box3d& box) {
+      if (box.isEmpty()) return;
+      for (int c = 0; c < 8; ++c) {
+        const Vec3d corner(c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z);
+        radius = std::max(radius, (corner - scene_->space.origin).length());
+      }
+    };
+    include(groups_[0].bounds);
+    for (size_t g : moving_[-1]) {
+      const TransformPair& t = moving_transform(groups_[g]);
+      include(transformed(groups_[g].bounds, t.start));
+      include(transformed(groups_[g].bounds, t.end));
+    }
+    for (const auto& instance : description().instances) {
+      const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].bounds;
+      include(transformed(object, transform(instance.transform).start));
+      include(transformed(object, transform(instance.transform).end));
+    }
+    scene_->space.scale = sane_scale(radius);
+    scene_radius_ = radius * scene_->space.scale;
+    groups_[0].space = scene_->space;
+    for (size_t g = 1; g < groups_.size(); ++g) {
+      if (groups_[g].bounds.isEmpty()) continue;
+      groups_[g].space.origin = groups_[g].bounds.center();
+      groups_[g].space.scale = sane_scale(groups_[g].bounds.size().length() / 2);
+    }
+  }
+
+  const TransformPair& moving_transform(const Group& g) const {
+    if (g.shapes.empty()) return description().transforms[0];
+    return transform(description().shapes[g.shapes[0].description].transform);
+  }
+
+  static Box3d transformed(const Box3d& box, const Mat4d& m) {
+    Box3d out;
+    if (box.isEmpty()) return out;
+    for (int c = 0; c < 8; ++c) {
+      out.extendBy(transform_point(m, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
+                                       c & 4 ? box.max.z : box.min.z}));
+    }
+    return out;
+  }
+
+  void bake_groups() {
+    for (size_t g = 0; g < groups_.size(); ++g) {
+      Group& group = groups_[g];
+      if (group.shapes.empty()) continue;
+      group.accel_group = g == 0 ? Accel::kWorld : scene_->accel->add_group();
+      for (LoadedShape& loaded : group.shapes) bake_shape(group, loaded);
+      group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
+      group.shapes[0].mesh = {};
+    }
+  }
+
+  void bake_shape(const Group& group, LoadedShape& loaded) {
+    const ShapeDescription& d = description().shapes[loaded.description];
+    Shape& plugin = *scene_->bound.shapes[loaded.description].plugin;
+    const Mat4d to_world = group.moving_shape ? Mat4d() : transform(d.transform).start;
+    const Mat4d to_group = to_world * group.space.from_world();
+    SceneShape shape;
+    shape.material = scene_->bound.shape_material[loaded.description];
+    shape.passes_through = scene_->materials[static_cast<size_t>(shape.material)]->is_interface();
+    // A moving shape's handedness is that of its transform, which the instance applies.
+    shape.flips = d.reverse_orientation != swaps_handedness(group.moving_shape ? transform(d.transform).start : to_world);
+    const int index = static_cast<int>(scene_->shapes.size());
+    if (dynamic_cast<MeshShape*>(&plugin)) {
+      size_t degenerate = 0;
+      scene_->meshes.push_back(bake_mesh(loaded.mesh, to_group, degenerate));
+      shape.mesh = scene_->meshes.back().get();
+      if (degenerate > 0) {
+        diagnostics_.warning(d.where, fmt::format("{} degenerate triangle{} without area", degenerate, degenerate == 1 ? "" : "s"),
+                             "left out; the picture is the same without");
+      }
+      if (shape.mesh->indices.empty()) return;
+    } else if (dynamic_cast<CurveShape*>(&plugin)) {
+      scene_->curves.push_back(bake_curves(loaded.curves, to_group));
+      shape.curves = scene_->curves.back().get();
+    } else {
+      auto& analytic = dynamic_cast<AnalyticShape&>(plugin);
+      // place() derives flips from the matrix it is given, which for a moving shape holds no handedness yet.
+      const bool mirrored_later = group.moving_shape && swaps_handedness(transform(d.transform).start);
+      analytic.place(to_group, d.reverse_orientation != mirrored_later);
+      shape.analytic = &analytic;
+    }
+    shape.sort_key = sort_key(shape, index);
+    shape.emission = emission_of(d);
+    auto alpha = make_alpha_test(shape, plugin);
+    attach(group, shape, index, alpha.get());
+    if (alpha) scene_->alpha_tests.push_back(std::move(alpha));
+    scene_->shapes.push_back(shape);
+    if (shape.emission >= 0) lit_shapes_.push_back({index, group.accel_group == Accel::kWorld});
+  }
+
+  void attach(const Group& group, const SceneShape& shape, int index, const AlphaTest* alpha) {
+    if (shape.mesh) {
+      const Mesh& m = *shape.mesh;
+      scene_->accel->add_mesh(group.accel_group,
+                              {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index, alpha);
+    } else if (shape.curves) {
+      const Curves& c = *shape.curves;
+      scene_->accel->add_curves(group.accel_group,
+                                {c.control_points.data(), c.segment_count(), c.kind == CurveData::Kind::Ribbon,
+                                 c.normals.data()},
+                                index, alpha);
+    } else {
+      scene_->accel->add_analytic(group.accel_group, *shape.analytic, index, alpha);
+    }
+  }
+
+  /// Meshes of one material are shaded together; an analytic shape by itself.
+  int sort_key(const SceneShape& shape, int index) {
+    const int kind = shape.mesh ? 0 : shape.curves ? 1 : 2 + index;
+    return keys_.try_emplace({shape.material, kind}, static_cast<int>(keys_.size())).first->second;
+  }
+
+  int emission_of(const ShapeDescription& d) {
+    if (d.area_light < 0) return -1;
+    const auto& light = scene_->bound.area_lights[static_cast<size_t>(d.area_light)].plugin;
+    if (!light || is_black(light->radiance())) return -1;
+    scene_->emissions.push_back({light->radiance(), light->two_sided()});
+    return static_cast<int>(scene_->emissions.size()) - 1;
+  }
+
+  void place_instances() {
+    for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])));
+    for (const auto& instance : description().instances) {
+      const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
+      const Group& object = groups_[static_cast<size_t>(instance.object + 1)];
+      place(object, keys);
+      for (size_t g : moving_[instance.object]) place(groups_[g], combined(moving_transform(groups_[g]), transform(instance.transform)));
+    }
+  }
+
+  /// A moving shape inside a moving instance: both interpolated at each of the finer set of keys.
+  static std::vector<Mat4d> combined(const TransformPair& inner, const TransformPair& outer) {
+    const size_t n = std::max(keyframes(inner).size(), keyframes(outer).size());
+    std::vector<Mat4d> keys;
+    for (size_t i = 0; i < n; ++i) {
+      const double s = n > 1 ? static_cast<double>(i) / static_cast<double>(n - 1) : 0;
+      keys.push_back(interpolate(inner, s) * interpolate(outer, s));
+    }
+    return keys;
+  }
+
+  void place(const Group& group, const std::vector<Mat4d>& to_world) {
+    if (group.shapes.empty() || group.accel_group == Accel::kWorld) return;
+    SceneInstance instance;
+    std::vector<Affine> affine;
+    for (const Mat4d& key : to_world) {
+      instance.keys.push_back(group.space.to_world() * key * scene_->space.from_world());
+      affine.push_back(to_affine(instance.keys.back()));
+    }
+    instance.normal_matrix = normal_matrix(instance.keys.front());
+    scene_->accel->add_instance(group.accel_group, affine);
+    scene_->instances.push_back(std::move(instance));
+  }
+
+  // ---- Everything else ----
+
+  void prepare_materials() {
+    for (size_t i = 0; i < scene_->bound.textures.size(); ++i) {
+      const auto& texture = scene_->bound.textures[i];
+      if (texture.plugin && scene_->plan.texture_live[i]) texture.plugin->prepare(context(texture.where));
+    }
+    for (size_t i = 0; i < scene_->bound.materials.size(); ++i) {
+      auto& material = scene_->bound.materials[i];
+      if (!material.plugin) {
+        // Its statement was wrong, which has been reported; --keep-going shows the default material.
+        material.plugin = scene_->bound.materials[0].plugin;
+      } else if (scene_->plan.material_live[i]) {
+        material.plugin->prepare(context(material.where));
+      }
+      scene_->materials.push_back(material.plugin.get());
+    }
+  }
+
+  void prepare_lights() {
+    for (size_t i = 0; i < scene_->bound.lights.size(); ++i) {
+      const auto& light = scene_->bound.lights[i];
+      if (!scene_->plan.light_live[i] || !light.plugin->prepare(context(light.where))) continue;
+      SceneLight entry;
+      entry.light = light.plugin.get();
+      entry.is_delta = light.plugin->is_delta();
+      add_light(entry);
+      if (light.plugin->is_environment()) scene_->environments.push_back(light.plugin.get());
+    }
+    for (const auto& [index, in_world] : lit_shapes_) {
+      if (in_world) add_emitters(index);
+    }
+  }
+
+  void add_light(SceneLight entry) {
+    if (!entry.is_delta) {
+      entry.dimension = scene_->light_dimensions;
+      scene_->light_dimensions += 2;
+    }
+    scene_->lights.push_back(entry);
+  }
+
+  /// As in pbrt, each triangle of an emitting mesh is a light of its own.
+  void add_emitters(int index) {
+    const SceneShape& shape = scene_->shapes[static_cast<size_t>(index)];
+    const Emission& emission = scene_->emissions[static_cast<size_t>(shape.emission)];
+    const size_t count = shape.mesh ? shape.mesh->triangle_count() : shape.analytic ? 1 : 0;
+    for (size_t t = 0; t < count; ++t) {
+      SceneLight entry;
+      entry.shape = index;
+      entry.prim = static_cast<uint32_t>(t);
+      entry.radiance = emission.radiance;
+      entry.two_sided = emission.two_sided;
+      add_light(entry);
+    }
+  }
+
+  void prepare_camera() {
+    Camera& camera = *scene_->bound.camera.plugin;
+    const Film& film = *scene_->bound.film.plugin;
+    camera.film = {film.resolution(), film.diagonal_metres()};
+    if (options_.quick) {
+      camera.film.resolution.x = std::max(1, camera.film.resolution.x / 4);
+      camera.film.resolution.y = std::max(1, camera.film.resolution.y / 4);
+    }
+    camera.prepare(context(scene_->bound.camera.where));
+    const TransformPair& world_to_camera = transform(description().camera_transform);
+    const TransformPair camera_to_world{world_to_camera.start.inverse(), world_to_camera.end.inverse()};
+    for (const Mat4d& key : keyframes(camera_to_world)) {
+      scene_->camera_keys.push_back(key * scene_->space.from_world());
+    }
+  }
+
+  BuildOptions options_;
+  TextureStore& textures_;
+  Diagnostics& diagnostics_;
+  std::unique_ptr<Scene> scene_;
+  std::vector<Group> groups_;
+  std::map<int, std::vector<size_t>> moving_;  ///< Groups of moving shapes, by object (-1: the world).
+  std::map<std::pair<int, int>, int> keys_;
+  std::vector<std::pair<int, bool>> lit_shapes_;
+  double scene_radius_ = 1;
+};
+
+}  // namespace
+
+size_t Mesh::bytes() const {
+  return sizeof(float) * (positions.capacity() + normals.capacity() + tangents.capacity() + uvs.capacity()) +
+         sizeof(uint32_t) * indices.capacity();
+}
+
+size_t Scene::triangle_count() const {
+  size_t n = 0;
+  for (const auto& m : meshes) n += m->triangle_count();
+  return n;
+}
+
+size_t Scene::geometry_bytes() const {
+  size_t n = accel ? accel->bytes() : 0;
+  for (const auto& m : meshes) n += m->bytes();
+  return n;
+}
+
+std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const BuildOptions& options,
+                                   TextureStore& textures, Diagnostics& diagnostics) {
+  return Builder(std::move(bound), std::move(plan), options, textures, diagnostics).run();
+}
+
+}  // namespace whit

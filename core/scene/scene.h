@@ -1,0 +1,118 @@
+// A scene ready to be traced: live plugins, geometry in render space, lights, and the ray tracer over it all.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/accel/accel.h"
+#include "core/base/render_space.h"
+#include "core/image/texture_store.h"
+#include "core/scene/bound_scene.h"
+#include "core/scene/effect_plan.h"
+
+namespace whit {
+
+/// A triangle mesh baked into its group's space, as float.
+struct Mesh {
+  std::vector<float> positions;  ///< 3 per vertex, and one of padding that Embree may read.
+  std::vector<uint32_t> indices;
+  std::vector<float> normals;    ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
+  std::vector<float> tangents;   ///< 3 per vertex or empty.
+  std::vector<float> uvs;        ///< 2 per vertex or empty.
+  size_t triangle_count() const { return indices.size() / 3; }
+  Vec3f position(uint32_t i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
+  Vec3f normal(uint32_t i) const { return {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}; }
+  Vec3f tangent(uint32_t i) const { return {tangents[3 * i], tangents[3 * i + 1], tangents[3 * i + 2]}; }
+  Vec2f uv(uint32_t i) const { return {uvs[2 * i], uvs[2 * i + 1]}; }
+  size_t bytes() const;
+};
+
+/// Curves baked into their group's space.
+struct Curves {
+  std::vector<float> control_points;  ///< 4 x (x, y, z, radius) per segment.
+  std::vector<float> normals;         ///< 4 x 3 per segment, ribbons only.
+  std::vector<float> u_range;         ///< 2 per segment.
+  CurveData::Kind kind = CurveData::Kind::Flat;
+  size_t segment_count() const { return control_points.size() / 16; }
+};
+
+/// One shape as shading sees it. Exactly one of mesh, curves and analytic is set.
+struct SceneShape {
+  const Mesh* mesh = nullptr;
+  const Curves* curves = nullptr;
+  const AnalyticShape* analytic = nullptr;
+  int material = 0;           ///< Index into Scene::materials.
+  int sort_key = 0;           ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
+  int emission = -1;          ///< Index into Scene::emissions.
+  bool flips = false;         ///< ReverseOrientation XOR handedness: normals flip.
+  bool passes_through = false;///< Its material is an interface: rays go on.
+};
+
+struct Emission {
+  RGB radiance{0.0f};
+  bool two_sided = false;
+};
+
+/// A placed object: its group's space to render space at evenly spaced times.
+struct SceneInstance {
+  std::vector<Mat4d> keys;
+  Mat4d normal_matrix;  ///< Inverse transpose of the only key (row-vector form); unused when moving.
+  bool moving() const { return keys.size() > 1; }
+};
+
+/// A light that is sampled once per shaded point: a Light plugin, or one emitting primitive of a shape.
+struct SceneLight {
+  const Light* light = nullptr;
+  int shape = -1;
+  uint32_t prim = 0;
+  RGB radiance{0.0f};       ///< Of an emitting primitive.
+  bool two_sided = false;
+  bool is_delta = false;
+  int dimension = -1;       ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
+};
+
+/// The numbers of the render that the command line may override.
+struct BuildOptions {
+  int samples_per_pixel = 0;      ///< 0: the scene's.
+  uint32_t seed = 0;
+  bool quick = false;             ///< pbrt's --quick: a quarter of the resolution, one sample.
+  bool robust_traversal = true;
+  bool keep_going = false;        ///< Build what is usable despite errors.
+};
+
+struct Scene {
+  RenderSpace space;
+  BoundScene bound;
+  EffectPlan plan;
+  std::vector<std::unique_ptr<Mesh>> meshes;
+  std::vector<std::unique_ptr<Curves>> curves;
+  std::vector<std::unique_ptr<AlphaTest>> alpha_tests;
+  std::vector<const Material*> materials;
+  std::vector<SceneShape> shapes;
+  std::vector<Emission> emissions;
+  std::vector<SceneInstance> instances;
+  std::vector<SceneLight> lights;
+  std::vector<const Light*> environments;  ///< Lights that escaped rays see.
+  std::vector<Mat4d> camera_keys;          ///< Camera to render space at evenly spaced times.
+  double time_start = 0, time_end = 1;     ///< Times of the first and last key.
+  int light_dimensions = 0;                ///< Sample dimensions that the lights of one bounce use.
+  int samples_per_pixel = 1;
+  std::unique_ptr<Accel> accel;
+
+  const Camera& camera() const { return *bound.camera.plugin; }
+  const Film& film() const { return *bound.film.plugin; }
+  const Filter& filter() const { return *bound.filter.plugin; }
+  const Sampler& sampler() const { return *bound.sampler.plugin; }
+  const Integrator& integrator() const { return *bound.integrator.plugin; }
+
+  size_t triangle_count() const;
+  size_t geometry_bytes() const;  ///< Meshes and acceleration structure.
+};
+
+/// Builds a planned scene: reads meshes, prepares what the plan keeps, builds the ray tracer. Problems go to
+/// `diagnostics`. Null when nothing can be rendered.
+std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const BuildOptions& options,
+                                   TextureStore& textures, Diagnostics& diagnostics);
+
+}  // namespace whit

@@ -1,0 +1,29 @@
+// Writes a scene file back in normal form: `whit fmt`, pbrt's --cat and --toply.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "core/base/diagnostics.h"
+#include "parser/source.h"
+
+namespace whit {
+
+struct FormatOptions {
+  bool expand_includes = false;  ///< Put the statements of included files in place of the Include, as --cat does.
+  bool to_ply = false;           ///< Write large inline triangle meshes to PLY files, as --toply does.
+  std::string ply_folder;        ///< Where those go: mesh_00001.ply and so on; "" is the current folder.
+};
+
+/// Writes the statements of a file to `out`: one a line, two spaces of indentation for each open AttributeBegin,
+/// TransformBegin and ObjectBegin, shortest numbers that read back the same. Comments and single blank lines stay;
+/// a comment within a statement moves in front of it. A statement with a mistake is reported and copied as it is.
+/// Formatting the result again changes nothing. The grammar is checked here, the meaning is not.
+Diagnostics format_file(Sources& sources, const std::string& path, std::ostream& out,
+                        const FormatOptions& options = {});
+
+/// The same for text that is no file; includes are relative to `folder`.
+Diagnostics format_text(Sources& sources, std::string name, std::string text, std::string folder, std::ostream& out,
+                        const FormatOptions& options = {});
+
+}  // namespace whit

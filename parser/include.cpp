@@ -1,0 +1,43 @@
+#include "parser/include.h"
+
+#include <filesystem>
+
+namespace whit {
+
+bool check_is_scene(const Sources& sources, uint32_t file, Reporter& reporter) {
+  const std::string_view text = sources.text(file);
+  if (text.empty()) {
+    reporter.error({file, 0}, "the file is empty: there is nothing to render");
+    return false;
+  }
+  const std::string binary = why_not_text(text);
+  if (!binary.empty()) reporter.error({file, 0}, "not a scene file: " + binary);
+  return binary.empty();
+}
+
+std::string join_path(const std::string& folder, const std::string& path) {
+  return (std::filesystem::path(folder) / std::filesystem::path(path)).string();
+}
+
+std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const std::string& folder,
+                                     const std::string& path, SourcePos where,
+                                     const std::function<bool(uint32_t)>& is_open) {
+  const std::string full = join_path(folder, path);
+  std::string problem;
+  const std::optional<uint32_t> file = sources.open(full, problem);
+  if (!file) {
+    reporter.file_error(where, "cannot open " + in_quotes(full) + ": " + problem);
+    return std::nullopt;
+  }
+  if (is_open(*file)) {
+    reporter.error(where, "the file " + in_quotes(full) + " includes itself",
+                   where.file == *file ? "" : "it is being read already, as the file that led here");
+    return std::nullopt;
+  }
+  const std::string binary = why_not_text(sources.text(*file));
+  if (binary.empty()) return file;
+  reporter.error(where, in_quotes(full) + " is not a scene file: " + binary);
+  return std::nullopt;
+}
+
+}  // namespace whit

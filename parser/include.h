@@ -1,0 +1,25 @@
+// What parsing and formatting share about main files and the files they include.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "parser/reporter.h"
+#include "parser/source.h"
+
+namespace whit {
+
+/// Reports why a file is no scene at all: it is empty, or not text. True when parsing may go on.
+bool check_is_scene(const Sources& sources, uint32_t file, Reporter& reporter);
+
+/// `path` itself when it is absolute, else below `folder`.
+std::string join_path(const std::string& folder, const std::string& path);
+
+/// Opens the file an Include at `where` asks for. Nothing, and a report, when it cannot be read, is no text, or
+/// `is_open` says that it is being read already. `folder` is the main file's, also inside included files.
+std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const std::string& folder,
+                                     const std::string& path, SourcePos where,
+                                     const std::function<bool(uint32_t)>& is_open);
+
+}  // namespace whit

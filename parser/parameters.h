@@ -1,0 +1,20 @@
+// The parameter list of a statement: `"float radius" 1 "rgb Kd" [ .5 .5 .5 ]`.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/base/parameter.h"
+#include "parser/lexer.h"
+
+namespace whit {
+
+/// The type a scene file calls `name`, aliases included ("color" is Rgb, "point" is Point3).
+std::optional<ParamType> find_param_type(std::string_view name);
+
+/// Reads parameters up to the first token that does not belong to the list. Texture names are kept unresolved.
+/// A parameter with a mistake is reported and left out. False when the rest of the statement makes no sense
+/// and reading has to resynchronise. Of duplicates the last is kept, with a warning.
+bool read_parameters(Lexer& lexer, ParameterList& out);
+
+}  // namespace whit

@@ -1,0 +1,103 @@
+#include "parser/parse.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "parser/include.h"
+#include "parser/lexer.h"
+#include "parser/reporter.h"
+#include "parser/scene_builder.h"
+#include "parser/statements.h"
+
+namespace whit {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string absolute(const std::string& folder) {
+  std::error_code failed;
+  const fs::path path = fs::absolute(folder.empty() ? "." : folder, failed);
+  return failed ? folder : path.lexically_normal().string();
+}
+
+/// Reads the main file and what it includes, in order. The files being read are a stack of its own, so that
+/// the depth of inclusion is not limited by the program's.
+class FileReader {
+ public:
+  FileReader(Sources& sources, Reporter& reporter, std::string folder)
+      : sources_(sources), reporter_(reporter), folder_(std::move(folder)) {}
+
+  uint64_t read(uint32_t main_file, SceneBuilder& builder) {
+    push(main_file);
+    while (!open_.empty()) {
+      const ReadResult result = read_statement(open_.back().lexer, statement_);
+      if (result == ReadResult::End) open_.pop_back();
+      if (result != ReadResult::Good) continue;
+      builder.apply(statement_);
+      if (const auto include = builder.take_include()) this->include(*include);
+    }
+    return bytes_;
+  }
+
+ private:
+  struct OpenFile {
+    uint32_t file;
+    Lexer lexer;
+  };
+
+  void push(uint32_t file) {
+    const std::string_view text = sources_.text(file);
+    bytes_ += text.size();
+    open_.push_back({file, Lexer(text, file, reporter_)});
+  }
+
+  void include(const SceneBuilder::IncludeRequest& request) {
+    const auto is_open = [this](uint32_t file) {
+      return std::any_of(open_.begin(), open_.end(), [file](const OpenFile& open) { return open.file == file; });
+    };
+    if (const auto file = open_include(sources_, reporter_, folder_, request.path, request.where, is_open)) push(*file);
+  }
+
+  Sources& sources_;
+  Reporter& reporter_;
+  std::string folder_;
+  std::vector<OpenFile> open_;
+  Statement statement_;
+  uint64_t bytes_ = 0;
+};
+
+void parse(Sources& sources, uint32_t file, const std::string& folder, ParseResult& result) {
+  Reporter reporter(result.diagnostics);
+  if (check_is_scene(sources, file, reporter)) {
+    SceneBuilder builder(sources, reporter, absolute(folder));
+    result.bytes = FileReader(sources, reporter, folder).read(file, builder);
+    builder.finish(file);
+    result.scenes = builder.take_scenes();
+  }
+  reporter.finish();
+}
+
+}  // namespace
+
+ParseResult parse_file(Sources& sources, const std::string& path) {
+  ParseResult result;
+  std::string problem;
+  const std::optional<uint32_t> file = sources.open(path, problem);
+  if (!file) {
+    result.diagnostics.file_error({}, "cannot open " + in_quotes(path) + ": " + problem);
+    return result;
+  }
+  parse(sources, *file, fs::path(path).parent_path().string(), result);
+  return result;
+}
+
+ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder) {
+  ParseResult result;
+  parse(sources, sources.add_text(std::move(name), std::move(text)), folder, result);
+  return result;
+}
+
+}  // namespace whit

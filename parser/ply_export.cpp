@@ -1,0 +1,141 @@
+#include "parser/ply_export.h"
+
+#include <algorithm>
+#include <bit>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+namespace whit {
+
+namespace {
+
+/// pbrt's limit: shorter meshes are easier to read where they are.
+constexpr size_t kInlineIndices = 500;
+
+/// The parameters of a mesh that a PLY file can hold; null where there is none.
+struct MeshData {
+  const Parameter* indices = nullptr;
+  const Parameter* positions = nullptr;
+  const Parameter* normals = nullptr;
+  const Parameter* uv = nullptr;
+  bool inexpressible = false;  ///< Something is there that would be lost.
+};
+
+bool is_uv(const Parameter& p) {
+  return (p.name == "uv" || p.name == "st") && (p.type == ParamType::Point2 || p.type == ParamType::Float);
+}
+
+MeshData mesh_data(const Statement& statement) {
+  MeshData mesh;
+  for (const Parameter& p : statement.parameters) {
+    if (p.name == "indices" && p.type == ParamType::Integer) mesh.indices = &p;
+    if (p.name == "P" && p.type == ParamType::Point3) mesh.positions = &p;
+    if (p.name == "N" && p.type == ParamType::Normal3) mesh.normals = &p;
+    if (p.name == "S" || p.name == "faceIndices") mesh.inexpressible = true;
+    if (!is_uv(p)) continue;
+    if (mesh.uv) mesh.inexpressible = true;
+    mesh.uv = &p;
+  }
+  return mesh;
+}
+
+bool is_consistent(const MeshData& mesh) {
+  const size_t vertices = mesh.positions->numbers().size() / 3;
+  if (mesh.indices->integers().size() % 3 != 0) return false;
+  if (mesh.normals && mesh.normals->numbers().size() != 3 * vertices) return false;
+  if (mesh.uv && mesh.uv->numbers().size() != 2 * vertices) return false;
+  const auto in_range = [vertices](int32_t i) { return i >= 0 && static_cast<size_t>(i) < vertices; };
+  return std::all_of(mesh.indices->integers().begin(), mesh.indices->integers().end(), in_range);
+}
+
+/// True when rounding the positions to float would show: at more than a millionth of the mesh's size.
+bool needs_double(const std::vector<double>& positions) {
+  double extent = 0, error = 0;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    double low = positions[axis], high = low;
+    for (size_t i = axis; i < positions.size(); i += 3) {
+      low = std::min(low, positions[i]);
+      high = std::max(high, positions[i]);
+      error = std::max(error, std::abs(static_cast<double>(static_cast<float>(positions[i])) - positions[i]));
+    }
+    extent = std::max(extent, high - low);
+  }
+  return !(error <= 1e-6 * extent);
+}
+
+template <class T>
+void put(std::string& out, T value) {
+  char bytes[sizeof(T)];
+  std::memcpy(bytes, &value, sizeof(T));
+  out.append(bytes, sizeof(T));
+}
+
+std::string header(const MeshData& mesh, bool doubles) {
+  const std::string real = doubles ? "double" : "float";
+  std::string out = "ply\nformat binary_";
+  out += std::endian::native == std::endian::little ? "little" : "big";
+  out += "_endian 1.0\nelement vertex " + std::to_string(mesh.positions->numbers().size() / 3) + "\n";
+  for (const char* name : {"x", "y", "z"}) out += "property " + real + " " + name + "\n";
+  if (mesh.normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
+  if (mesh.uv) out += "property float u\nproperty float v\n";
+  out += "element face " + std::to_string(mesh.indices->integers().size() / 3) + "\n";
+  return out + "property list uint8 int vertex_indices\nend_header\n";
+}
+
+std::string body(const MeshData& mesh, bool doubles) {
+  std::string out;
+  const auto put_floats = [&out](const Parameter* p, size_t first, size_t count) {
+    for (size_t i = 0; p && i < count; ++i) put(out, static_cast<float>(p->numbers()[first + i]));
+  };
+  const std::vector<double>& positions = mesh.positions->numbers();
+  for (size_t v = 0; v < positions.size() / 3; ++v) {
+    for (size_t i = 0; doubles && i < 3; ++i) put(out, positions[3 * v + i]);
+    if (!doubles) put_floats(mesh.positions, 3 * v, 3);
+    put_floats(mesh.normals, 3 * v, 3);
+    put_floats(mesh.uv, 2 * v, 2);
+  }
+  const std::vector<int32_t>& indices = mesh.indices->integers();
+  for (size_t i = 0; i < indices.size(); ++i) {
+    if (i % 3 == 0) put(out, uint8_t{3});
+    put(out, indices[i]);
+  }
+  return out;
+}
+
+}  // namespace
+
+bool can_export_mesh(const Statement& statement) {
+  if (statement.row != find_statement("Shape") || statement.names[0] != "trianglemesh") return false;
+  const MeshData mesh = mesh_data(statement);
+  if (!mesh.indices || !mesh.positions || mesh.inexpressible) return false;
+  return mesh.indices->integers().size() > kInlineIndices && is_consistent(mesh);
+}
+
+bool write_mesh(const Statement& statement, const std::string& path, std::string& problem) {
+  const MeshData mesh = mesh_data(statement);
+  const bool doubles = needs_double(mesh.positions->numbers());
+  errno = 0;
+  std::ofstream file(path, std::ios::binary);
+  const std::string data = header(mesh, doubles) + body(mesh, doubles);
+  file.write(data.data(), static_cast<std::streamsize>(data.size()));
+  file.close();
+  if (!file.fail()) return true;
+  problem = errno != 0 ? std::strerror(errno) : "writing failed";
+  return false;
+}
+
+void replace_by_plymesh(Statement& statement, const std::string& filename) {
+  const MeshData mesh = mesh_data(statement);
+  ParameterList kept(1);
+  kept[0].type = ParamType::String;
+  kept[0].name = "filename";
+  kept[0].values = std::vector<std::string>{filename};
+  for (Parameter& p : statement.parameters)
+    if (&p != mesh.indices && &p != mesh.positions && &p != mesh.normals && &p != mesh.uv) kept.push_back(std::move(p));
+  statement.names[0] = "plymesh";
+  statement.parameters = std::move(kept);
+}
+
+}  // namespace whit

@@ -1,0 +1,49 @@
+// Problems found while parsing, capped per file so that a broken file cannot bury its first mistake.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/base/diagnostics.h"
+
+namespace whit {
+
+/// Passes diagnostics on to a Diagnostics, the first kMost errors and the first kMost warnings of each file.
+class Reporter {
+ public:
+  static constexpr uint64_t kMost = 100;
+
+  explicit Reporter(Diagnostics& out) : out_(out) {}
+
+  void error(SourcePos where, std::string message, std::string remedy = {}) {
+    if (admit(where, Severity::Error)) out_.error(where, std::move(message), std::move(remedy));
+  }
+  void file_error(SourcePos where, std::string message, std::string remedy = {}) {
+    if (admit(where, Severity::Error)) out_.file_error(where, std::move(message), std::move(remedy));
+  }
+  void warning(SourcePos where, std::string message, std::string remedy = {}) {
+    if (admit(where, Severity::Warning)) out_.warning(where, std::move(message), std::move(remedy));
+  }
+
+  /// How many errors there were so far, those left out included.
+  uint64_t errors() const { return errors_; }
+
+  /// True when there are so many problems that one more is hardly shown and need not be explained.
+  bool crowded() const { return problems_ > 2 * kMost; }
+
+  /// Says once for every file how many problems were left out. Call at the end.
+  void finish();
+
+ private:
+  struct Tally {
+    uint64_t errors = 0, warnings = 0;
+    SourcePos first_dropped_error, first_dropped_warning;
+  };
+  bool admit(SourcePos where, Severity severity);
+
+  Diagnostics& out_;
+  uint64_t errors_ = 0, problems_ = 0;
+  std::vector<Tally> files_;
+};
+
+}  // namespace whit

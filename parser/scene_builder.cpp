@@ -1,0 +1,451 @@
+#include "parser/scene_builder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "parser/lexer.h"
+#include "parser/transforms.h"
+
+namespace whit {
+
+namespace {
+
+/// "did you mean" among the names of some maps; nothing once there are so many problems that none is shown any more.
+template <class... Maps>
+std::string suggest(const Reporter& reporter, const std::string& name, const Maps&... maps) {
+  // Scopes can hold very many names; the search for a near one must not dominate a file full of mistakes.
+  constexpr size_t kMost = 2000;
+  std::vector<std::string> names;
+  const auto add = [&names](const auto& map) {
+    for (const auto& [key, value] : map)
+      if (names.size() < kMost) names.push_back(key);
+  };
+  if (reporter.crowded()) return {};
+  (add(maps), ...);
+  // A hash table has no order; the answer should not depend on that.
+  std::sort(names.begin(), names.end());
+  return did_you_mean(name, names);
+}
+
+int look_up(const std::unordered_map<std::string, int>& names, const std::string& name) {
+  const auto found = names.find(name);
+  return found == names.end() ? -1 : found->second;
+}
+
+Vec3d three(const Statement& s, size_t first) { return {s.numbers[first], s.numbers[first + 1], s.numbers[first + 2]}; }
+
+Mat4d sixteen(const Statement& s) {
+  Mat4d m;
+  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = s.numbers[static_cast<size_t>(i)];
+  return m;
+}
+
+}  // namespace
+
+SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder)
+    : sources_(sources), reporter_(reporter) {
+  options_.folder = std::move(folder);
+}
+
+void SceneBuilder::apply(Statement& statement) {
+  if (!allowed(statement)) return;
+  resolve_textures(statement.parameters);
+  (this->*statement.row->handler)(statement);
+}
+
+bool SceneBuilder::allowed(const Statement& s) {
+  const std::string name(s.row->name);
+  if (in_world_ && s.row->block == Block::Options) {
+    reporter_.error(s.where, name + " is not allowed inside the world block",
+                    s.row->handler == &SceneBuilder::begin_world ? "end the world before with WorldEnd"
+                                                                 : "move it before WorldBegin");
+    return false;
+  }
+  if (!in_world_ && s.row->block == Block::World) {
+    // Where WorldBegin is missing every statement behind it would be an error; the first says it all.
+    const bool end = s.row->handler == &SceneBuilder::end_world;
+    if (!world_missing_reported_)
+      reporter_.error(s.where, end ? "WorldEnd without WorldBegin" : name + " outside the world block",
+                      end ? "" : "it must stand between WorldBegin and WorldEnd; is WorldBegin missing?");
+    world_missing_reported_ = true;
+    return false;
+  }
+  return true;
+}
+
+std::optional<SceneBuilder::IncludeRequest> SceneBuilder::take_include() {
+  return std::exchange(include_, std::nullopt);
+}
+
+void SceneBuilder::finish(uint32_t main_file) {
+  if (in_world_) {
+    reporter_.error(scenes_.back().world_begin, "WorldBegin without WorldEnd: the file ends inside the world block",
+                    "add WorldEnd at the end");
+    close_world("the end of the file");
+  } else if (scenes_.empty() && !world_missing_reported_) {
+    reporter_.error({main_file, 0}, "no WorldBegin: there is nothing to render",
+                    "a scene stands between WorldBegin and WorldEnd");
+  }
+}
+
+// ---------------------------------------------------------------------------------------------- transforms
+
+void SceneBuilder::change_ctm(const Statement& s, const Mat4d& m, bool concatenate) {
+  TransformPair changed = state_.ctm;
+  if (state_.start_active) changed.start = concatenate ? m * state_.ctm.start : m;
+  if (state_.end_active) changed.end = concatenate ? m * state_.ctm.end : m;
+  if (!is_regular(changed.start) || !is_regular(changed.end)) {
+    reporter_.error(s.where, std::string(s.row->name) + " makes a matrix that cannot be inverted",
+                    "nothing may be scaled to zero or infinity");
+    return;
+  }
+  state_.ctm = changed;
+}
+
+void SceneBuilder::identity(Statement& s) { change_ctm(s, Mat4d(), false); }
+void SceneBuilder::translate(Statement& s) { change_ctm(s, translation(three(s, 0)), true); }
+void SceneBuilder::scale(Statement& s) { change_ctm(s, scaling(three(s, 0)), true); }
+void SceneBuilder::transform(Statement& s) { change_ctm(s, sixteen(s), false); }
+void SceneBuilder::concat_transform(Statement& s) { change_ctm(s, sixteen(s), true); }
+
+void SceneBuilder::rotate(Statement& s) {
+  const Vec3d axis = three(s, 1);
+  if (axis == Vec3d(0)) {
+    reporter_.error(s.arguments_at, "Rotate about an axis of length zero",
+                    "give the angle in degrees and then the three components of the axis");
+    return;
+  }
+  change_ctm(s, rotation(s.numbers[0], axis), true);
+}
+
+void SceneBuilder::look_at(Statement& s) {
+  const std::optional<Mat4d> m = looking_at(three(s, 0), three(s, 3), three(s, 6));
+  if (m) {
+    change_ctm(s, *m, true);
+  } else if (three(s, 0) == three(s, 3)) {
+    reporter_.error(s.where, "LookAt: the eye and the point looked at coincide");
+  } else {
+    reporter_.error(s.where, "LookAt: the up vector is zero or parallel to the direction of view");
+  }
+}
+
+void SceneBuilder::coordinate_system(Statement& s) { coordinate_systems_[s.names[0]] = state_.ctm; }
+
+void SceneBuilder::coord_sys_transform(Statement& s) {
+  const auto found = coordinate_systems_.find(s.names[0]);
+  if (found != coordinate_systems_.end()) {
+    // Both times, whatever ActiveTransform says: pbrt does the same.
+    state_.ctm = found->second;
+    return;
+  }
+  const std::string slip = suggest(reporter_, s.names[0], coordinate_systems_);
+  reporter_.warning(s.names_at[0],
+                    "no coordinate system named " + in_quotes(s.names[0]) + ": CoordSysTransform is ignored", slip);
+}
+
+void SceneBuilder::active_transform(Statement& s) {
+  if (s.word != "All" && s.word != "StartTime" && s.word != "EndTime") {
+    reporter_.error(s.arguments_at, "ActiveTransform cannot be " + in_quotes(s.word),
+                    "write All, StartTime or EndTime");
+    return;
+  }
+  state_.start_active = s.word != "EndTime";
+  state_.end_active = s.word != "StartTime";
+}
+
+void SceneBuilder::transform_times(Statement& s) {
+  options_.time_start = s.numbers[0];
+  options_.time_end = s.numbers[1];
+}
+
+int SceneBuilder::intern(const TransformPair& pair) {
+  std::vector<TransformPair>& known = scene().transforms;
+  if (known.empty()) known.emplace_back();
+  const auto same = [&](const TransformPair& other) { return other.start == pair.start && other.end == pair.end; };
+  if (same(known.front())) return 0;
+  if (!same(known.back())) known.push_back(pair);
+  return static_cast<int>(known.size() - 1);
+}
+
+/// The index of the CTM; with `warn_animated` only its start is used, as pbrt does for what cannot move.
+int SceneBuilder::current_transform(const Statement& s, bool warn_animated) {
+  if (!warn_animated || !state_.ctm.animated()) return intern(state_.ctm);
+  reporter_.warning(s.where, std::string(s.row->name) + " cannot move", "only the transform at the start time is used");
+  return intern({state_.ctm.start, state_.ctm.start});
+}
+
+// ------------------------------------------------------------------------------------------------- options
+
+/// The statement as an entity whose plugin is the string at `name_index`.
+Entity SceneBuilder::entity(Statement& s, size_t name_index) {
+  return {s.names[name_index], s.where, s.names_at[name_index], std::move(s.parameters)};
+}
+
+void SceneBuilder::accelerator(Statement& s) { options_.accelerator = entity(s); }
+void SceneBuilder::film(Statement& s) { options_.film = entity(s); }
+void SceneBuilder::pixel_filter(Statement& s) { options_.filter = entity(s); }
+void SceneBuilder::integrator(Statement& s) { options_.integrator = entity(s); }
+void SceneBuilder::sampler(Statement& s) { options_.sampler = entity(s); }
+
+void SceneBuilder::camera(Statement& s) {
+  options_.camera = entity(s);
+  camera_transform_ = state_.ctm;
+  // Gauss-Jordan, because Imath's faster inverse gives up on tiny determinants.
+  coordinate_systems_["camera"] = {state_.ctm.start.gjInverse(), state_.ctm.end.gjInverse()};
+}
+
+/// Makes the string parameter "type" of a MakeNamed... statement its plugin.
+bool SceneBuilder::take_type(Statement& s, Entity& out) {
+  out = entity(s);
+  const auto is_type = [](const Parameter& p) {
+    return p.type == ParamType::String && p.name == "type" && !p.strings().empty();
+  };
+  const auto found = std::find_if(out.params.begin(), out.params.end(), is_type);
+  if (found == out.params.end()) {
+    reporter_.error(s.where,
+                    std::string(s.row->name) + " " + in_quotes(s.names[0]) + " has no parameter \"string type\"",
+                    "\"string type\" says what kind it is");
+    return false;
+  }
+  out.plugin = found->strings().front();
+  out.plugin_at = value_position(sources_, *found, 0);
+  out.params.erase(found);
+  return true;
+}
+
+void SceneBuilder::make_named_medium(Statement& s) {
+  Entity medium;
+  if (take_type(s, medium)) scene().media.push_back(std::move(medium));
+}
+
+void SceneBuilder::medium_interface(Statement& s) { scene().media_uses.push_back(s.where); }
+
+void SceneBuilder::include(Statement& s) { include_ = IncludeRequest{s.names[0], s.names_at[0]}; }
+
+// -------------------------------------------------------------------------------------------------- blocks
+
+void SceneBuilder::begin_world(Statement& s) {
+  scenes_.push_back(options_);
+  in_world_ = true;
+  world_missing_reported_ = false;
+  SceneDescription& world = scenes_.back();
+  world.world_begin = s.where;
+  world.transforms.assign(1, TransformPair());
+  world.camera_transform = intern(camera_transform_);
+  MaterialDescription matte;
+  matte.plugin = "matte";
+  world.materials.push_back(std::move(matte));
+  state_.ctm = TransformPair();
+  state_.start_active = state_.end_active = true;
+  coordinate_systems_["world"] = state_.ctm;
+}
+
+void SceneBuilder::end_world(Statement&) { close_world("WorldEnd"); }
+
+void SceneBuilder::close_world(const std::string& before) {
+  for (; !blocks_.empty(); leave_top_block()) warn_unclosed(blocks_.back(), before);
+  state_ = GraphicsState();
+  definitions_.clear();
+  for (Names* names : {&float_textures_, &spectrum_textures_, &named_materials_, &objects_}) names->clear();
+  coordinate_systems_.clear();
+  current_object_ = warned_area_light_ = -1;
+  in_world_ = false;
+}
+
+void SceneBuilder::open_block(BlockKind kind, const Statement& s, bool ignored) {
+  blocks_.push_back({kind, ignored, s.where, state_, definitions_.size()});
+}
+
+void SceneBuilder::warn_unclosed(const OpenBlock& block, const std::string& before) {
+  constexpr const char* kNames[] = {"Attribute", "Transform", "Object"};
+  const std::string name = kNames[static_cast<int>(block.kind)];
+  reporter_.warning(block.where, name + "Begin is never closed", name + "End is assumed before " + before);
+}
+
+/// Returns to the state before the innermost open block.
+void SceneBuilder::leave_top_block() {
+  OpenBlock& block = blocks_.back();
+  if (block.kind == BlockKind::Transform) {
+    state_.ctm = block.state.ctm;
+    state_.start_active = block.state.start_active;
+    state_.end_active = block.state.end_active;
+  } else {
+    state_ = block.state;
+    for (; definitions_.size() > block.definitions; definitions_.pop_back()) {
+      Definition& undone = definitions_.back();
+      if (undone.before < 0) {
+        undone.names->erase(undone.name);
+      } else {
+        (*undone.names)[undone.name] = undone.before;
+      }
+    }
+  }
+  if (block.kind == BlockKind::Object && !block.ignored) current_object_ = -1;
+  blocks_.pop_back();
+}
+
+/// Closes the innermost block of a kind and every one inside it that was left open. Only TransformBegin may be
+/// left open by AttributeEnd, and nothing by TransformEnd, so that one slip does not undo an outer block.
+void SceneBuilder::close_block(BlockKind kind, const Statement& s) {
+  const std::string end(s.row->name);
+  const auto found = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const OpenBlock& block) {
+    return block.kind == kind || kind == BlockKind::Transform ||
+           (kind == BlockKind::Attribute && block.kind == BlockKind::Object);
+  });
+  if (found == blocks_.rend() || found->kind != kind) {
+    const std::string begin = end.substr(0, end.size() - 3) + "Begin";
+    reporter_.error(
+        s.where, end + " without " + begin,
+        blocks_.empty() ? "" : "the innermost open block began at " + sources_.location(blocks_.back().where));
+    return;
+  }
+  const auto remaining = static_cast<size_t>(blocks_.rend() - found);
+  for (; blocks_.size() > remaining; leave_top_block()) warn_unclosed(blocks_.back(), end);
+  leave_top_block();
+}
+
+void SceneBuilder::begin_attribute(Statement& s) { open_block(BlockKind::Attribute, s); }
+void SceneBuilder::end_attribute(Statement& s) { close_block(BlockKind::Attribute, s); }
+void SceneBuilder::begin_transform(Statement& s) { open_block(BlockKind::Transform, s); }
+void SceneBuilder::end_transform(Statement& s) { close_block(BlockKind::Transform, s); }
+void SceneBuilder::end_object(Statement& s) { close_block(BlockKind::Object, s); }
+
+void SceneBuilder::begin_object(Statement& s) {
+  const bool nested = current_object_ >= 0;
+  open_block(BlockKind::Object, s, nested);
+  if (nested) {
+    const SourcePos outer = scene().objects[static_cast<size_t>(current_object_)].where;
+    reporter_.error(s.where, "ObjectBegin inside an object definition",
+                    "the definition around it began at " + sources_.location(outer));
+    return;
+  }
+  current_object_ = static_cast<int>(scene().objects.size());
+  scene().objects.push_back({s.names[0], s.where});
+  // Objects are known in the whole world, in whatever block they are defined.
+  objects_[s.names[0]] = current_object_;
+}
+
+void SceneBuilder::object_instance(Statement& s) {
+  if (current_object_ >= 0) {
+    reporter_.error(s.where, "ObjectInstance inside an object definition", "an object holds shapes only");
+    return;
+  }
+  const int object = look_up(objects_, s.names[0]);
+  if (object < 0) {
+    reporter_.error(s.names_at[0], "no object named " + in_quotes(s.names[0]),
+                    suggest(reporter_, s.names[0], objects_));
+    return;
+  }
+  scene().instances.push_back({object, current_transform(s, false), s.where});
+}
+
+// -------------------------------------------------------------------------------------- what the world holds
+
+void SceneBuilder::reverse_orientation(Statement&) { state_.reverse_orientation = !state_.reverse_orientation; }
+
+/// Gives a name a meaning until the end of the innermost AttributeBegin or ObjectBegin.
+void SceneBuilder::define(Names& names, const std::string& name, int index) {
+  const auto [slot, fresh] = names.try_emplace(name, index);
+  if (!blocks_.empty()) definitions_.push_back({&names, name, fresh ? -1 : slot->second});
+  slot->second = index;
+}
+
+void SceneBuilder::resolve_textures(ParameterList& list) {
+  for (Parameter& parameter : list) {
+    auto* references = std::get_if<std::vector<TextureRef>>(&parameter.values);
+    for (size_t i = 0; references && i < references->size(); ++i) {
+      TextureRef& reference = (*references)[i];
+      reference.float_texture = look_up(float_textures_, reference.name);
+      reference.spectrum_texture = look_up(spectrum_textures_, reference.name);
+      if (reference.float_texture >= 0 || reference.spectrum_texture >= 0) continue;
+      reporter_.error(value_position(sources_, parameter, i), "no texture named " + in_quotes(reference.name),
+                      suggest(reporter_, reference.name, float_textures_, spectrum_textures_));
+    }
+  }
+}
+
+void SceneBuilder::texture(Statement& s) {
+  const std::string& type = s.names[1];
+  if (type != "float" && type != "spectrum" && type != "color") {
+    reporter_.error(s.names_at[1], "a texture cannot be of type " + in_quotes(type),
+                    "its type is \"float\" or \"spectrum\"");
+    return;
+  }
+  TextureDescription out;
+  out.name = s.names[0];
+  out.spectrum = type != "float";
+  out.transform = current_transform(s, true);
+  static_cast<Entity&>(out) = entity(s, 2);
+  const int index = static_cast<int>(scene().textures.size());
+  define(out.spectrum ? spectrum_textures_ : float_textures_, out.name, index);
+  scene().textures.push_back(std::move(out));
+}
+
+void SceneBuilder::add_material(Entity made, std::string name) {
+  MaterialDescription out;
+  static_cast<Entity&>(out) = std::move(made);
+  out.name = std::move(name);
+  for (const Parameter& parameter : out.params)
+    for (const std::string& value : parameter.strings())
+      if (const int index = look_up(named_materials_, value); index >= 0) out.named.emplace_back(value, index);
+  scene().materials.push_back(std::move(out));
+}
+
+void SceneBuilder::material(Statement& s) {
+  add_material(entity(s), "");
+  state_.material = static_cast<int>(scene().materials.size() - 1);
+}
+
+void SceneBuilder::make_named_material(Statement& s) {
+  const std::string name = s.names[0];
+  Entity made;
+  const bool good = take_type(s, made);
+  // Without a type the name is defined all the same, or every use of it would be one more error.
+  if (!good) made.plugin = "matte";
+  if (named_materials_.count(name) != 0)
+    reporter_.warning(s.names_at[0], "named material " + in_quotes(name) + " is defined again",
+                      "the new one is used from here on");
+  add_material(std::move(made), name);
+  define(named_materials_, name, static_cast<int>(scene().materials.size() - 1));
+}
+
+void SceneBuilder::named_material(Statement& s) {
+  const int index = look_up(named_materials_, s.names[0]);
+  if (index < 0) {
+    reporter_.error(s.names_at[0], "no material named " + in_quotes(s.names[0]),
+                    suggest(reporter_, s.names[0], named_materials_));
+    return;
+  }
+  state_.material = index;
+}
+
+void SceneBuilder::light_source(Statement& s) {
+  LightDescription out;
+  out.transform = current_transform(s, true);
+  static_cast<Entity&>(out) = entity(s);
+  scene().lights.push_back(std::move(out));
+}
+
+void SceneBuilder::area_light_source(Statement& s) {
+  // An empty name turns the area light off again.
+  state_.area_light = s.names[0].empty() ? -1 : static_cast<int>(scene().area_lights.size());
+  if (!s.names[0].empty()) scene().area_lights.push_back(entity(s));
+}
+
+void SceneBuilder::shape(Statement& s) {
+  ShapeDescription out;
+  out.transform = current_transform(s, false);
+  out.material = state_.material;
+  out.area_light = state_.area_light;
+  out.object = current_object_;
+  out.reverse_orientation = state_.reverse_orientation;
+  static_cast<Entity&>(out) = entity(s);
+  if (out.object >= 0 && out.area_light >= 0 && out.area_light != warned_area_light_) {
+    warned_area_light_ = out.area_light;
+    reporter_.warning(out.where, "area light inside an object definition", "it glows, but lights nothing");
+  }
+  scene().shapes.push_back(std::move(out));
+}
+
+}  // namespace whit

@@ -1,0 +1,142 @@
+// The state machine behind the statements: graphics state and scopes in, SceneDescriptions out.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "parser/reporter.h"
+#include "parser/scene_description.h"
+#include "parser/source.h"
+#include "parser/statements.h"
+
+namespace whit {
+
+/// Applies statements one by one. The table in statements.cpp names a member function for each directive.
+class SceneBuilder {
+ public:
+  /// `folder` is the absolute folder of the main file.
+  SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder);
+
+  /// Does what a statement asks for, or reports why it cannot.
+  void apply(Statement& statement);
+
+  struct IncludeRequest {
+    std::string path;  ///< As the file gives it.
+    SourcePos where;   ///< The string with the path.
+  };
+  /// The file the last statement wants read now, if it was an Include.
+  std::optional<IncludeRequest> take_include();
+
+  /// Reports what is missing at the end of the main file.
+  void finish(uint32_t main_file);
+
+  /// The scenes found, one for each WorldBegin.
+  std::vector<SceneDescription> take_scenes() { return std::move(scenes_); }
+
+  // One handler a directive.
+  void identity(Statement& s);
+  void translate(Statement& s);
+  void scale(Statement& s);
+  void rotate(Statement& s);
+  void look_at(Statement& s);
+  void transform(Statement& s);
+  void concat_transform(Statement& s);
+  void coordinate_system(Statement& s);
+  void coord_sys_transform(Statement& s);
+  void active_transform(Statement& s);
+  void transform_times(Statement& s);
+  void accelerator(Statement& s);
+  void camera(Statement& s);
+  void film(Statement& s);
+  void pixel_filter(Statement& s);
+  void integrator(Statement& s);
+  void sampler(Statement& s);
+  void make_named_medium(Statement& s);
+  void medium_interface(Statement& s);
+  void include(Statement& s);
+  void begin_world(Statement& s);
+  void end_world(Statement& s);
+  void begin_attribute(Statement& s);
+  void end_attribute(Statement& s);
+  void begin_transform(Statement& s);
+  void end_transform(Statement& s);
+  void begin_object(Statement& s);
+  void end_object(Statement& s);
+  void object_instance(Statement& s);
+  void reverse_orientation(Statement& s);
+  void texture(Statement& s);
+  void material(Statement& s);
+  void make_named_material(Statement& s);
+  void named_material(Statement& s);
+  void light_source(Statement& s);
+  void area_light_source(Statement& s);
+  void shape(Statement& s);
+
+ private:
+  /// What AttributeBegin saves, but for the names in scope.
+  struct GraphicsState {
+    TransformPair ctm;
+    bool start_active = true, end_active = true;
+    bool reverse_orientation = false;
+    int material = 0;
+    int area_light = -1;
+  };
+
+  enum class BlockKind : uint8_t { Attribute, Transform, Object };
+
+  /// An open block: what to return to at its end.
+  struct OpenBlock {
+    BlockKind kind;
+    bool ignored;  ///< An ObjectBegin that was an error; kept so that its end finds it.
+    SourcePos where;
+    GraphicsState state;
+    size_t definitions;  ///< How many of definitions_ there were before.
+  };
+
+  using Names = std::unordered_map<std::string, int>;
+
+  /// A name defined in an open block, and what it meant before (-1: nothing).
+  struct Definition {
+    Names* names;
+    std::string name;
+    int before;
+  };
+
+  bool allowed(const Statement& s);
+  void change_ctm(const Statement& s, const Mat4d& m, bool concatenate);
+  int current_transform(const Statement& s, bool warn_animated);
+  int intern(const TransformPair& pair);
+  Entity entity(Statement& s, size_t name_index = 0);
+  bool take_type(Statement& s, Entity& out);
+  void resolve_textures(ParameterList& list);
+  void add_material(Entity made, std::string name);
+  void define(Names& names, const std::string& name, int index);
+  void open_block(BlockKind kind, const Statement& s, bool ignored = false);
+  void close_block(BlockKind kind, const Statement& s);
+  void warn_unclosed(const OpenBlock& block, const std::string& before);
+  void leave_top_block();
+  void close_world(const std::string& before);
+  SceneDescription& scene() { return in_world_ ? scenes_.back() : options_; }
+
+  const Sources& sources_;
+  Reporter& reporter_;
+
+  bool in_world_ = false;
+  bool world_missing_reported_ = false;
+  SceneDescription options_;  ///< What was said before WorldBegin; kept for the next one.
+  TransformPair camera_transform_;
+  std::vector<SceneDescription> scenes_;
+
+  GraphicsState state_;
+  std::vector<OpenBlock> blocks_;
+  Names float_textures_, spectrum_textures_, named_materials_, objects_;
+  std::vector<Definition> definitions_;
+  std::unordered_map<std::string, TransformPair> coordinate_systems_;
+  int current_object_ = -1;
+  int warned_area_light_ = -1;
+  std::optional<IncludeRequest> include_;
+};
+
+}  // namespace whit

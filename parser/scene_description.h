@@ -1,0 +1,88 @@
+// A parsed scene: what the statements of a .pbrt file ask for, as plain data in file order.
+//
+// Transforms are accumulated, scopes are resolved, names of textures, materials and objects are turned
+// into indices. Nothing is instantiated and no plugin name or parameter is checked yet (core/scene does).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/base/diagnostics.h"
+#include "core/base/parameter.h"
+#include "core/base/vec.h"
+
+namespace whit {
+
+/// An object-to-world (or world-to-camera) matrix at the start and the end of the transform times.
+struct TransformPair {
+  Mat4d start, end;
+  bool animated() const { return start != end; }
+};
+
+/// A statement that names a plugin: `Shape "sphere" "float radius" 1`.
+struct Entity {
+  std::string plugin;   ///< "sphere"; "" when the file gives none.
+  SourcePos where;      ///< The directive.
+  SourcePos plugin_at;  ///< The plugin's name.
+  ParameterList params;
+};
+
+struct TextureDescription : Entity {
+  std::string name;
+  bool spectrum = false;  ///< "spectrum"/"color" texture, else "float".
+  int transform = 0;      ///< CTM (texture to world) at the statement.
+};
+
+struct MaterialDescription : Entity {
+  std::string name;  ///< Of MakeNamedMaterial; "" for Material.
+  /// Named materials known at this statement, by parameters of type string that a mix material uses:
+  /// (name, index) of every named material in scope whose name occurs as a string value here.
+  std::vector<std::pair<std::string, int>> named;
+};
+
+struct LightDescription : Entity {
+  int transform = 0;
+};
+
+struct ShapeDescription : Entity {
+  int transform = 0;
+  int material = 0;     ///< Index into materials (0 is the default matte).
+  int area_light = -1;  ///< Index into area_lights.
+  int object = -1;      ///< Index into objects when inside ObjectBegin/End, -1 for the world.
+  bool reverse_orientation = false;
+};
+
+struct ObjectDescription {
+  std::string name;
+  SourcePos where;
+};
+
+struct InstanceDescription {
+  int object = 0;
+  int transform = 0;
+  SourcePos where;
+};
+
+/// One WorldBegin/End block with the options in force. Options the file does not name have plugin "".
+struct SceneDescription {
+  Entity camera, film, filter, sampler, integrator, accelerator;
+  int camera_transform = 0;  ///< World to camera, the CTM at the Camera statement.
+  double time_start = 0, time_end = 1;
+
+  std::vector<TransformPair> transforms;  ///< [0] is the identity; others deduplicated against the last used.
+  std::vector<TextureDescription> textures;
+  std::vector<MaterialDescription> materials;  ///< [0] is pbrt's default: matte with no parameters.
+  std::vector<LightDescription> lights;
+  std::vector<Entity> area_lights;
+  std::vector<ShapeDescription> shapes;
+  std::vector<ObjectDescription> objects;
+  std::vector<InstanceDescription> instances;
+  std::vector<Entity> media;          ///< MakeNamedMedium: parsed, not simulated.
+  std::vector<SourcePos> media_uses;  ///< MediumInterface statements.
+
+  std::string folder;  ///< Folder of the main file, absolute: relative asset paths resolve against it.
+  SourcePos world_begin;
+};
+
+}  // namespace whit

@@ -1,0 +1,294 @@
+#include "parser/source.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <mutex>
+
+namespace whit {
+
+namespace {
+
+/// The length of the UTF-8 sequence at `at`, 0 when the bytes there are none.
+size_t utf8_length(std::string_view text, size_t at) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(at);
+  const size_t length = lead < 0x80 ? 1 : lead >= 0xc2 && lead < 0xe0 ? 2 : (lead & 0xf0) == 0xe0 ? 3 : 4;
+  if (lead >= 0x80 && (lead < 0xc2 || lead > 0xf4)) return 0;
+  if (at + length > text.size()) return 0;
+  for (size_t i = 1; i < length; ++i)
+    if ((byte(at + i) & 0xc0) != 0x80) return 0;
+  if (length == 3 && ((lead == 0xe0 && byte(at + 1) < 0xa0) || (lead == 0xed && byte(at + 1) >= 0xa0))) return 0;
+  if (length == 4 && ((lead == 0xf0 && byte(at + 1) < 0x90) || (lead == 0xf4 && byte(at + 1) >= 0x90))) return 0;
+  return length;
+}
+
+std::string hex_escape(unsigned char byte) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  return std::string("\\x") + kDigits[byte >> 4] + kDigits[byte & 15];
+}
+
+bool is_control(unsigned char byte) { return byte < 0x20 || byte == 0x7f; }
+
+/// One code point at `at` as a terminal can show it; `length` is how many bytes of the text it covers.
+std::string visible(std::string_view text, size_t at, size_t& length) {
+  length = utf8_length(text, at);
+  const auto byte = static_cast<unsigned char>(text[at]);
+  // U+0080 to U+009F are control characters too, and some terminals obey them.
+  const bool c1 = length == 2 && byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0;
+  if (length > 0 && !is_control(byte) && !c1) return std::string(text.substr(at, length));
+  length = std::max<size_t>(length, 1);
+  if (byte == '\t') return "    ";
+  std::string out;
+  for (size_t i = 0; i < length; ++i) out += hex_escape(static_cast<unsigned char>(text[at + i]));
+  return out;
+}
+
+size_t count_code_points(std::string_view text) {
+  size_t count = 0;
+  for (size_t i = 0; i < text.size(); ++count) i += std::max<size_t>(utf8_length(text, i), 1);
+  return count;
+}
+
+size_t columns(const std::string& cell) { return count_code_points(cell); }
+
+size_t columns(const std::vector<std::string>& cells) {
+  size_t sum = 0;
+  for (const std::string& cell : cells) sum += columns(cell);
+  return sum;
+}
+
+std::string read_all(int descriptor, std::string& problem) {
+  std::string text;
+  for (;;) {
+    constexpr size_t kChunk = 1 << 16;
+    const size_t old = text.size();
+    text.resize(old + kChunk);
+    const ssize_t got = ::read(descriptor, text.data() + old, kChunk);
+    text.resize(old + static_cast<size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return text;
+    if (got < 0 && errno != EINTR) {
+      problem = std::strerror(errno);
+      return {};
+    }
+  }
+}
+
+}  // namespace
+
+/// One file: its bytes, and the number of lines before each block of them, counted when first asked for.
+class Sources::File {
+ public:
+  File(std::string file_name, std::string text) : name(std::move(file_name)), owned_(std::move(text)) {
+    text_ = owned_;
+  }
+  File(std::string file_name, const char* mapped, size_t bytes) : name(std::move(file_name)), mapped_(true) {
+    text_ = {mapped, bytes};
+  }
+  ~File() {
+    if (mapped_) ::munmap(const_cast<char*>(text_.data()), text_.size());
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+
+  std::string_view text() const { return text_; }
+
+  /// How many newlines there are before `offset`.
+  uint64_t lines_before(uint64_t offset) const {
+    const uint64_t block = offset / kBlock;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    while (counts_.size() <= block) {
+      const std::string_view last = text_.substr((counts_.size() - 1) * kBlock, kBlock);
+      counts_.push_back(counts_.back() + static_cast<uint64_t>(std::count(last.begin(), last.end(), '\n')));
+    }
+    const std::string_view rest = text_.substr(block * kBlock, offset - block * kBlock);
+    return counts_[block] + static_cast<uint64_t>(std::count(rest.begin(), rest.end(), '\n'));
+  }
+
+  /// True when `status` is the file as it was when it was opened.
+  bool is(const struct stat& status) const {
+    return from_disk && status.st_dev == status_.st_dev && status.st_ino == status_.st_ino &&
+           status.st_size == status_.st_size && status.st_mtim.tv_sec == status_.st_mtim.tv_sec &&
+           status.st_mtim.tv_nsec == status_.st_mtim.tv_nsec;
+  }
+  void remember(const struct stat& status) {
+    status_ = status;
+    from_disk = true;
+  }
+
+  std::string name;
+  bool from_disk = false;
+
+ private:
+  static constexpr uint64_t kBlock = 1 << 20;
+
+  std::string owned_;
+  std::string_view text_;
+  bool mapped_ = false;
+  struct stat status_ = {};
+  mutable std::mutex mutex_;
+  mutable std::vector<uint64_t> counts_{0};
+};
+
+Sources::Sources() = default;
+Sources::~Sources() = default;
+
+const Sources::File* Sources::find(uint32_t file) const { return file < files_.size() ? files_[file].get() : nullptr; }
+
+std::optional<uint32_t> Sources::open(const std::string& path, std::string& problem) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    problem = std::strerror(errno);
+    return std::nullopt;
+  }
+  struct stat status = {};
+  problem.clear();
+  if (::fstat(descriptor, &status) != 0) problem = std::strerror(errno);
+  if (problem.empty() && S_ISDIR(status.st_mode)) problem = std::strerror(EISDIR);
+  const bool regular = S_ISREG(status.st_mode);
+  // A device such as /dev/zero has no end; a pipe has.
+  if (problem.empty() && !regular && !S_ISFIFO(status.st_mode)) problem = "Not a regular file";
+  for (uint32_t i = 0; problem.empty() && regular && i < files_.size(); ++i) {
+    if (!files_[i]->is(status)) continue;
+    ::close(descriptor);
+    return i;
+  }
+  std::unique_ptr<File> file;
+  if (problem.empty() && regular && status.st_size > 0) {
+    const auto bytes = static_cast<size_t>(status.st_size);
+    void* mapped = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (mapped != MAP_FAILED) {
+      ::madvise(mapped, bytes, MADV_SEQUENTIAL);
+      file = std::make_unique<File>(path, static_cast<const char*>(mapped), bytes);
+    }
+  }
+  if (problem.empty() && !file) file = std::make_unique<File>(path, read_all(descriptor, problem));
+  ::close(descriptor);
+  if (!problem.empty()) return std::nullopt;
+  if (regular) file->remember(status);
+  files_.push_back(std::move(file));
+  return static_cast<uint32_t>(files_.size() - 1);
+}
+
+uint32_t Sources::add_text(std::string name, std::string text) {
+  files_.push_back(std::make_unique<File>(std::move(name), std::move(text)));
+  return static_cast<uint32_t>(files_.size() - 1);
+}
+
+std::string_view Sources::text(uint32_t file) const {
+  const File* f = find(file);
+  return f ? f->text() : std::string_view();
+}
+
+const std::string& Sources::name(uint32_t file) const {
+  static const std::string none;
+  const File* f = find(file);
+  return f ? f->name : none;
+}
+
+SourcePlace Sources::place(SourcePos where) const {
+  const File* file = find(where.file);
+  if (!file) return {};
+  const std::string_view text = file->text();
+  const uint64_t offset = std::min<uint64_t>(where.offset, text.size());
+  const std::string_view before = text.substr(0, offset);
+  const size_t newline = before.rfind('\n');
+  const size_t start = newline == std::string_view::npos ? 0 : newline + 1;
+  return {file->lines_before(offset) + 1, count_code_points(before.substr(start)) + 1};
+}
+
+std::string Sources::location(SourcePos where) const {
+  const File* file = find(where.file);
+  if (!file) return {};
+  const SourcePlace at = place(where);
+  return file->name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+}
+
+std::string Sources::excerpt(SourcePos where, bool colour) const {
+  // Twice the columns shown, so that a line of four-byte code points still fills its half of the window.
+  constexpr size_t kReach = 240, kColumns = 100, kHalf = kColumns / 2;
+  const std::string_view text = this->text(where.file);
+  const size_t offset = std::min<size_t>(where.offset, text.size());
+  size_t start = offset;
+  while (start > 0 && offset - start < kReach && text[start - 1] != '\n') --start;
+  size_t stop = offset;
+  while (stop < text.size() && stop - offset < kReach && text[stop] != '\n') ++stop;
+  bool cut_left = start > 0 && text[start - 1] != '\n';
+  bool cut_right = stop < text.size() && text[stop] != '\n';
+  while (cut_left && start < offset && (static_cast<unsigned char>(text[start]) & 0xc0) == 0x80) ++start;
+  if (stop > offset && !cut_right && text[stop - 1] == '\r') --stop;
+  const std::string_view window = text.substr(0, stop);
+  std::vector<std::string> left, right;
+  for (size_t at = start, length = 0; at < stop; at += length)
+    (at < offset ? left : right).push_back(visible(window, at, length));
+
+  // The caret's half may be wider when the other needs less than its own.
+  const size_t all_before = columns(left), all_after = columns(right);
+  const size_t room_after = std::max(kHalf, kColumns - std::min(kColumns, all_before));
+  const size_t room_before = kColumns - std::min(room_after, all_after);
+  size_t columns_before = 0, columns_after = 0, first = left.size(), last = 0;
+  while (first > 0 && columns_before + columns(left[first - 1]) <= room_before)
+    columns_before += columns(left[--first]);
+  while (last < right.size() && columns_after + columns(right[last]) <= room_after)
+    columns_after += columns(right[last++]);
+  std::string before, after;
+  for (size_t i = first; i < left.size(); ++i) before += left[i];
+  for (size_t i = 0; i < last; ++i) after += right[i];
+  cut_left = cut_left || first > 0;
+  cut_right = cut_right || last < right.size();
+  if (before.empty() && after.empty()) return {};
+  const size_t indent = 4 + (cut_left ? 4 : 0) + columns_before;
+  return "    " + std::string(cut_left ? "... " : "") + before + after + (cut_right ? " ..." : "") + "\n" +
+         std::string(indent, ' ') + (colour ? "\033[1;32m^\033[0m" : "^") + "\n";
+}
+
+std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour) const {
+  const bool error = diagnostic.severity == Severity::Error;
+  const bool located = find(diagnostic.where.file) != nullptr;
+  std::string out;
+  if (located) out += colour ? "\033[1m" + location(diagnostic.where) + ":\033[0m " : location(diagnostic.where) + ": ";
+  if (colour) out += error ? "\033[1;31m" : "\033[1;35m";
+  out += error ? "error:" : "warning:";
+  if (colour) out += "\033[0m";
+  out += " " + diagnostic.message + "\n";
+  if (located) out += excerpt(diagnostic.where, colour);
+  if (!diagnostic.remedy.empty()) out += "  " + diagnostic.remedy + "\n";
+  return out;
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr size_t kLongest = 60;
+  std::string out = "\"";
+  size_t count = 0;
+  for (size_t at = 0, length = 0; at < text.size(); at += length, ++count) {
+    if (count == kLongest) return out + "...\"";
+    out += text[at] == '\t' ? "\\t" : visible(text, at, length);
+    if (text[at] == '\t') length = 1;
+  }
+  return out + "\"";
+}
+
+std::string why_not_text(std::string_view text) {
+  if (text.starts_with("\x1f\x8b")) return "it is compressed with gzip";
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "it is UTF-16 text, not UTF-8";
+  if (text.find('\0') != std::string_view::npos) return "it holds binary data";
+  // Comments may be in any encoding of old, so bytes that are no UTF-8 weigh less than control characters.
+  const std::string_view head = text.substr(0, 4096);
+  size_t controls = 0, invalid = 0;
+  for (size_t at = 0; at < head.size();) {
+    const size_t length = utf8_length(head, at);
+    const auto byte = static_cast<unsigned char>(head[at]);
+    if (length == 0) ++invalid;
+    if (is_control(byte) && !(byte >= '\t' && byte <= '\r')) ++controls;
+    at += std::max<size_t>(length, 1);
+  }
+  const bool binary = 50 * controls > head.size() || 3 * invalid > head.size();
+  return binary ? "it holds binary data" : std::string();
+}
+
+}  // namespace whit

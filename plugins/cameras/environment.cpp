@@ -1,0 +1,51 @@
+// A camera that sees all directions, as a lat-long picture: film x is the azimuth, film y the angle from +y.
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 6.3. Lens and screen window have no effect.
+
+#include "core/base/fastmath.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/screen_camera.h"
+
+namespace whit {
+namespace {
+
+class Environment final : public ScreenCamera {
+ public:
+  bool needs_lens() const override { return false; }
+
+  void generate(const CameraRays& rays) const override {
+    generate_shifted(rays, 0, 0, rays.o, rays.d);
+    if (rays.rx_d) {
+      generate_shifted(rays, 1, 0, rays.rx_o, rays.rx_d);
+      generate_shifted(rays, 0, 1, rays.ry_o, rays.ry_d);
+    }
+    float* weight = rays.weight;
+    for_lanes(rays.n, [=](int i) { weight[i] = 1; });
+  }
+
+ private:
+  /// Rays through the film positions plus (dx, dy).
+  void generate_shifted(const CameraRays& rays, float dx, float dy, const Vec3Lanes& o, const Vec3Lanes& d) const {
+    const float x_turn = static_cast<float>(1.0 / film.resolution.x);
+    const float y_turn = static_cast<float>(0.5 / film.resolution.y);
+    const float *film_x = rays.film_x, *film_y = rays.film_y;
+    for_lanes(rays.n, [=](int i) {
+      const SinCos theta = sin_cos_2pi(y_turn * (film_y[i] + dy));
+      const SinCos phi = sin_cos_2pi(x_turn * (film_x[i] + dx));
+      o.set(i, {0, 0, 0});
+      d.set(i, {theta.sin * phi.cos, theta.cos, theta.sin * phi.sin});
+    });
+  }
+};
+
+const Register<Environment> environment{"camera",
+                                        "environment",
+                                        "Camera that sees all directions, as a lat-long picture with +y at the top.",
+                                        frameaspectratio_param(),
+                                        screenwindow_param(),
+                                        lensradius_param(),
+                                        focaldistance_param(),
+                                        shutteropen_param(),
+                                        shutterclose_param()};
+
+}  // namespace
+}  // namespace whit

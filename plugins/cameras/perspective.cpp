@@ -1,0 +1,77 @@
+// A pinhole or thin-lens camera. Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 6.2.
+// The lens is ideal: everything on the plane of focus is sharp, without vignetting.
+
+#include <cmath>
+
+#include "core/base/sampling.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/screen_camera.h"
+
+namespace whit {
+namespace {
+
+class Perspective final : public ScreenCamera {
+ public:
+  float fov = 90;      ///< Degrees, full angle along the shorter side of the frame.
+  float half_fov = 0;  ///< Degrees; replaces fov when above 0.
+
+  bool prepare(const PrepareContext&) override {
+    const double degrees = half_fov > 0 ? static_cast<double>(half_fov) : 0.5 * static_cast<double>(fov);
+    screen_ = screen(std::tan(degrees * detail::kPiD / 180));
+    return true;
+  }
+
+  void generate(const CameraRays& rays) const override {
+    generate_shifted(rays, 0, 0, rays.o, rays.d);
+    if (rays.rx_d) {
+      generate_shifted(rays, 1, 0, rays.rx_o, rays.rx_d);
+      generate_shifted(rays, 0, 1, rays.ry_o, rays.ry_d);
+    }
+    float* weight = rays.weight;
+    for_lanes(rays.n, [=](int i) { weight[i] = 1; });
+  }
+
+ private:
+  /// Rays through the film positions plus (dx, dy), each through its own point of the lens.
+  void generate_shifted(const CameraRays& rays, float dx, float dy, const Vec3Lanes& o, const Vec3Lanes& d) const {
+    const Screen s = screen_;
+    const float *film_x = rays.film_x, *film_y = rays.film_y, *lens_u = rays.lens_u, *lens_v = rays.lens_v;
+    if (!needs_lens()) {
+      for_lanes(rays.n, [=](int i) {
+        o.set(i, {0, 0, 0});
+        d.set(i, normalize(Vec3f(s.x(film_x[i] + dx), s.y(film_y[i] + dy), 1)));
+      });
+      return;
+    }
+    const float radius = lens_radius, focus = focal_distance;
+    for_lanes(rays.n, [=](int i) {
+      const Vec2f disk = concentric_disk(lens_u[i], lens_v[i]);
+      const Vec3f lens(radius * disk.x, radius * disk.y, 0);
+      const Vec3f sharp(focus * s.x(film_x[i] + dx), focus * s.y(film_y[i] + dy), focus);
+      o.set(i, lens);
+      d.set(i, normalize(sharp - lens));
+    });
+  }
+
+  Screen screen_;
+};
+
+constexpr Range kFullAngle{std::numeric_limits<float>::min(), 179.999};
+constexpr Range kHalfAngle{0, 89.9995};
+
+const Register<Perspective> perspective{
+    "camera",
+    "perspective",
+    "Pinhole or thin-lens camera that looks along +z.",
+    param(&Perspective::fov, "fov", 90.0f, Unit::Degrees, "Angle of view along the shorter side.", kFullAngle),
+    param(&Perspective::half_fov, "halffov", 0.0f, Unit::Degrees,
+          "Half the angle of view, in place of fov when above 0.", kHalfAngle),
+    frameaspectratio_param(),
+    screenwindow_param(),
+    lensradius_param(),
+    focaldistance_param(),
+    shutteropen_param(),
+    shutterclose_param()};
+
+}  // namespace
+}  // namespace whit

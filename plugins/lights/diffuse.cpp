@@ -1,0 +1,32 @@
+// Surfaces that radiate the same in every direction, on their front side or on both.
+// Which points of the surface light a given point is the shape's business.
+
+#include "core/plugin/light.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+class Diffuse final : public AreaLight {
+ public:
+  RGB L{1.0f}, scale{1.0f};
+  bool twosided = false;
+  int samples = 1, nsamples = 1;  ///< pbrt's; the integrator takes one sample per light and hit.
+
+  RGB radiance() const override { return L * scale; }
+  bool two_sided() const override { return twosided; }
+  EffectSet effects() const override { return is_black(radiance()) ? EffectSet{} : EffectSet{Effect::AreaLight}; }
+};
+
+const Register<Diffuse> diffuse{
+    "area light",
+    "diffuse",
+    "A surface that radiates evenly in all directions.",
+    param(&Diffuse::L, "L", RGB{1.0f}, Unit::Radiance, "Emitted radiance."),
+    param(&Diffuse::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
+    param(&Diffuse::twosided, "twosided", false, Unit::None, "Radiates from the back as well."),
+    param(&Diffuse::samples, "samples", 1, Unit::None, "Accepted for pbrt's sake; has no effect."),
+    param(&Diffuse::nsamples, "nsamples", 1, Unit::None, "Accepted for pbrt's sake; has no effect.")};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,44 @@
+// Light from infinitely far away all around, constant or from a lat-long map, importance sampled by the map.
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.6 and 14.2.4. The map is neither flipped nor
+// gamma decoded, and is read bilinearly.
+
+#include "core/image/latlong_map.h"
+#include "core/plugin/environment.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+class InfiniteLight final : public EnvironmentLight {
+ public:
+  RGB L{1.0f}, scale{1.0f};
+  FileName map;
+  int samples = 1, nsamples = 1;  ///< pbrt's; the integrator takes one sample per light and hit.
+
+  bool is_black() const override { return whit::is_black(L * scale); }
+
+  bool prepare(const PrepareContext& ctx) override {
+    std::unique_ptr<const DirectionalRadiance> radiance;
+    if (map.empty()) {
+      radiance = std::make_unique<UniformRadiance>(L * scale);
+    } else {
+      radiance = read_latlong_map(map.path, L * scale, LatLongRule::Pbrt, ctx);
+    }
+    if (!radiance) return false;
+    set_radiance(std::move(radiance));
+    return set_infinite(ctx);
+  }
+};
+
+const Register<InfiniteLight> infinite{
+    "light",
+    "infinite",
+    "Light from infinitely far away all around, constant or from a map.",
+    param(&InfiniteLight::L, "L", RGB{1.0f}, Unit::Radiance, "Radiance, or factor of the map."),
+    param(&InfiniteLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
+    param(&InfiniteLight::map, "mapname", Unit::None, "Lat-long map; +z of light space is at its top."),
+    param(&InfiniteLight::samples, "samples", 1, Unit::None, "Accepted for pbrt's sake; has no effect."),
+    param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "Accepted for pbrt's sake; has no effect.")};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,61 @@
+// A point that radiates the same in all directions; what arrives falls with the square of the distance.
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.
+
+#include "core/base/fastmath.h"
+#include "core/plugin/light.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+class PointLight final : public Light {
+ public:
+  RGB I{1.0f}, scale{1.0f};
+  Point from;  ///< Light space.
+
+  bool is_delta() const override { return true; }
+  EffectSet effects() const override { return {Effect::DeltaLight}; }
+  bool is_black() const override { return whit::is_black(I * scale); }
+
+  bool prepare(const PrepareContext& ctx) override {
+    const Vec3d world = transform_point(light_to_world, from.value);
+    position_ = Vec3f((world - ctx.space.origin) * ctx.space.scale);
+    to_render_ = static_cast<float>(ctx.space.scale);
+    intensity_ = I * scale;
+    return true;
+  }
+
+  void sample(const LightSamples& s) const override {
+    const Vec3f position = position_;
+    const RGB intensity = intensity_;
+    const float to_render = to_render_;
+    for_lanes(s.n, [=](int i) {
+      const Vec3f to_light = position - s.p[i];
+      const float distance = length(to_light);
+      // At the light itself there is no direction, and no light.
+      const float inverse = distance > 0 ? 1 / distance : 0.0f;
+      // Intensity is per world length squared. One factor at a time, because the square alone could overflow.
+      const float falloff = to_render * inverse;
+      s.wi.set(i, to_light * inverse);
+      s.distance[i] = distance;
+      s.radiance.set(
+          i, {intensity.x * falloff * falloff, intensity.y * falloff * falloff, intensity.z * falloff * falloff});
+    });
+  }
+
+ private:
+  Vec3f position_{0, 0, 0};  ///< Render space.
+  RGB intensity_{0.0f};
+  float to_render_ = 1;  ///< Render lengths per world length.
+};
+
+const Register<PointLight> point{
+    "light",
+    "point",
+    "A point that radiates evenly in all directions.",
+    param(&PointLight::I, "I", RGB{1.0f}, Unit::Intensity, "Intensity: radiance at distance 1."),
+    param(&PointLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of I."),
+    param(&PointLight::from, "from", Point{}, Unit::Length, "Position.")};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,45 @@
+// Diffuse reflection: Lambert's, or that of Oren and Nayar (Generalization of Lambert's Reflectance Model, 1994) where
+// sigma is not 0.
+#include "core/batch/lobe_formulas.h"
+#include "core/plugin/material_inputs.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+struct Matte : Material {
+  Tex<RGB> Kd;
+  Tex<float> sigma;
+
+  EffectSet effects() const override { return effects_of(*this, Kd, sigma); }
+
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    Lobe lobe;
+    lobe.weight = weights(Kd, s);
+    if (!sigma.is_constant() || sigma.value() > 0) set_oren_nayar(s, lobe);
+    out.add(lobe);
+  }
+
+ private:
+  void set_oren_nayar(const ShadingBatch& s, Lobe& lobe) const {
+    const float* const degrees = sigma(s);
+    float *const a = s.arena->floats(s.n), *const b = s.arena->floats(s.n);
+    for_lanes(s.n, [&](int i) {
+      const OrenNayarAB ab = oren_nayar_ab(clamp_to(degrees[i], 0.0f, 90.0f) * (kPi / 180));
+      a[i] = ab.a, b[i] = ab.b;
+    });
+    lobe.type = LobeType::OrenNayar;
+    lobe.a = a, lobe.b = b;
+  }
+};
+
+const Register<Matte> matte{
+    "material",
+    "matte",
+    "Lambertian or Oren-Nayar diffuse reflection.",
+    param(&Matte::Kd, "Kd", RGB(0.5f), Unit::None, "Diffuse reflectance."),
+    param(&Matte::sigma, "sigma", 0.0f, Unit::Degrees, "Oren-Nayar roughness, clamped to 0..90; 0 is Lambertian."),
+    bumpmap_param()};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,31 @@
+// A perfect mirror: reflects the same share at every angle.
+#include "core/plugin/material_inputs.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+struct Mirror : Material {
+  Tex<RGB> Kr;
+
+  EffectSet effects() const override {
+    EffectSet e = effects_of(*this, Kr);
+    if (!is_black(Kr)) e.add(Effect::Mirror);
+    return e;
+  }
+
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (is_black(Kr)) return;
+    Lobe lobe;
+    lobe.type = LobeType::SpecularReflection;
+    lobe.weight = weights(Kr, s);
+    out.add(lobe);
+  }
+};
+
+const Register<Mirror> mirror{"material", "mirror", "A perfect mirror.",
+                              param(&Mirror::Kr, "Kr", RGB(0.9f), Unit::None, "Reflectance, the same at every angle."),
+                              bumpmap_param()};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,116 @@
+// Halton points in bases 2 and 3 with nested uniform scrambling, drawn anew for every pixel, dimension and branch, the
+// sample numbers shuffled so that different dimensions combine at random (padding). Every pair of numbers has the full
+// quality of the first two Halton dimensions, whatever its dimension, so there is no dimension at which quality or
+// tables end; what higher Halton bases would promise for more than two dimensions at once needs more samples than a
+// pixel has. Sources: Halton 1960; Owen, Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences, 1995; Burley, Practical
+// Hash-based Owen Scrambling, JCGT 9(4), 2020.
+
+#include <algorithm>
+
+#include "core/base/radical_inverse.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/sampler.h"
+
+namespace whit {
+namespace {
+
+constexpr int kMaxSamples = 1 << 22;  // owen_base3_digit() divides exactly up to here
+constexpr int kBlock = 256;
+
+class Halton final : public Sampler {
+ public:
+  int pixel_samples = 16;
+  bool pixel_centre = false;
+
+  int samples_per_pixel() const override { return pixel_samples; }
+  int set_samples_per_pixel(int n) override { return pixel_samples = std::clamp(n, 1, kMaxSamples); }
+
+  void get_1d(const SampleKeys& keys, int dimension, float* u) const override {
+    uint32_t key[kBlock], index[kBlock];
+    for (int first = 0; first < keys.n; first += kBlock) {
+      const int n = std::min(kBlock, keys.n - first);
+      begin(keys, first, n, 2 * static_cast<uint32_t>(dimension) + 1, key, index);
+      float* out = u + first;
+      for_lanes(n, [&](int i) { out[i] = owen_base2(index[i], key[i]); });
+    }
+  }
+
+  void get_2d(const SampleKeys& keys, int dimension, float* u, float* v) const override {
+    uint32_t key[kBlock], index[kBlock];
+    for (int first = 0; first < keys.n; first += kBlock) {
+      const int n = std::min(kBlock, keys.n - first);
+      begin(keys, first, n, 2 * static_cast<uint32_t>(dimension), key, index);
+      float* out = u + first;
+      for_lanes(n, [&](int i) { out[i] = owen_base2(index[i], key[i]); });
+      scramble_base3(n, key, index, v + first);
+    }
+  }
+
+  void pixel_offset(const SampleKeys& keys, float* u, float* v) const override {
+    if (!pixel_centre) return get_2d(keys, 0, u, v);
+    for_lanes(keys.n, [=](int i) { u[i] = v[i] = 0.5f; });
+  }
+
+ private:
+  /// Keys and shuffled sample numbers of n lanes; `purpose` tells dimensions apart. A sample number out of range would
+  /// never come to rest in shuffle(), so it counts as the last.
+  void begin(const SampleKeys& keys, int first, int n, uint32_t purpose, uint32_t* key, uint32_t* index) const {
+    const uint32_t base = hash_combine(mix32(seed ^ 0x48616c74u), purpose);
+    const int32_t *px = keys.px + first, *py = keys.py + first;
+    const uint32_t last = static_cast<uint32_t>(pixel_samples) - 1;
+    const uint32_t *sample = keys.index + first, *stream = keys.stream + first;
+    for_lanes(n, [=](int i) {
+      const uint32_t pixel =
+          hash_combine(hash_combine(base, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
+      key[i] = hash_combine(pixel, stream[i]);
+      index[i] = sample[i] < last ? sample[i] : last;
+    });
+    shuffle(n, key, index);
+  }
+
+  /// Replaces sample numbers below pixel_samples by their images under the permutation that each lane's key chooses:
+  /// a permutation of the next power of two, applied until the image is small enough. No lane waits for another's
+  /// result, so it does not depend on the batch.
+  void shuffle(int n, const uint32_t* key, uint32_t* index) const {
+    const auto count = static_cast<uint32_t>(pixel_samples);
+    const int bits = bits_below(count);
+    for_lanes(n, [=](int i) { index[i] = permute_bits(index[i], bits, key[i]); });
+    if (std::has_single_bit(count) && count > 1) return;
+    for (uint32_t open = 1; open != 0;) {
+      open = 0;
+#pragma omp simd reduction(| : open)
+      for (int i = 0; i < n; ++i) {
+        const uint32_t next = permute_bits(index[i], bits, key[i]);
+        index[i] = index[i] < count ? index[i] : next;
+        open |= index[i] < count ? 0u : 1u;
+      }
+    }
+  }
+
+  /// The scrambled radical inverses in base 3: as many digits as the sample numbers have, and a random rest.
+  void scramble_base3(int n, uint32_t* key, uint32_t* index, float* out) const {
+    uint32_t value[kBlock] = {};
+    for_lanes(n, [&](int i) { key[i] = hash_combine(key[i], 0x62617365u); });
+    const int digits = base3_digits(static_cast<uint32_t>(pixel_samples));
+    double cells = 1;
+    for (int d = 0; d < digits; ++d, cells *= 3) {
+      for_lanes(n, [&](int i) { owen_base3_digit(index[i], key[i], value[i]); });
+    }
+    const auto width = static_cast<float>(1 / cells);
+    for_lanes(n, [&](int i) {
+      const float position = static_cast<float>(static_cast<int32_t>(value[i])) + unit_float(key[i]);
+      const float u = position * width;
+      out[i] = u < kBelowOne ? u : kBelowOne;
+    });
+  }
+};
+
+const Register<Halton> halton{"sampler", "halton",
+                              "Scrambled Halton points: evenly spread in every pixel, for every pair of dimensions.",
+                              param(&Halton::pixel_samples, "pixelsamples", 16, Unit::None,
+                                    "Samples per pixel, at least one.", Range{1, kMaxSamples}),
+                              param(&Halton::pixel_centre, "samplepixelcenter", false, Unit::None,
+                                    "Puts every camera sample at the centre of its pixel.")};
+
+}  // namespace
+}  // namespace whit

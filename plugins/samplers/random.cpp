@@ -1,0 +1,44 @@
+// Independent random numbers: a hash of pixel, sample number, dimension, branch and seed.
+// The error falls as one over the square root of the number of samples, the slowest there is, but nothing correlates.
+
+#include <algorithm>
+
+#include "core/base/hash.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/sampler.h"
+
+namespace whit {
+namespace {
+
+constexpr int kMaxSamples = 1 << 30;
+
+class Random final : public Sampler {
+ public:
+  int pixel_samples = 4;
+
+  int samples_per_pixel() const override { return pixel_samples; }
+  int set_samples_per_pixel(int n) override { return pixel_samples = std::clamp(n, 1, kMaxSamples); }
+
+  void get_1d(const SampleKeys& keys, int dimension, float* u) const override {
+    const uint32_t key = hash_combine(mix32(seed ^ 0x52616e64u), static_cast<uint32_t>(dimension));
+    const int32_t *px = keys.px, *py = keys.py;
+    const uint32_t *index = keys.index, *stream = keys.stream;
+    for_lanes(keys.n, [=](int i) {
+      const uint32_t pixel =
+          hash_combine(hash_combine(key, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
+      u[i] = unit_float(hash_combine(hash_combine(pixel, stream[i]), index[i]));
+    });
+  }
+
+  void get_2d(const SampleKeys& keys, int dimension, float* u, float* v) const override {
+    get_1d(keys, dimension, u);
+    get_1d(keys, dimension + 1, v);
+  }
+};
+
+const Register<Random> random_sampler{"sampler", "random", "Independent random numbers.",
+                                      param(&Random::pixel_samples, "pixelsamples", 4, Unit::None,
+                                            "Samples per pixel, at least one.", Range{1, kMaxSamples})};
+
+}  // namespace
+}  // namespace whit

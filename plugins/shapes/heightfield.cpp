@@ -1,0 +1,60 @@
+// A grid of heights over the unit square of the xy plane, as a mesh of two triangles per cell, as in pbrt-v3.
+
+#include <fmt/format.h>
+
+#include "core/plugin/registry.h"
+#include "core/plugin/shape.h"
+
+namespace whit {
+namespace {
+
+struct Heightfield final : MeshShape {
+  int nu, nv;
+  FloatList Pz;
+
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (nu < 2) diagnostics.error(statement, fmt::format("heightfield needs \"nu\" of at least 2, not {}", nu));
+    if (nv < 2) diagnostics.error(statement, fmt::format("heightfield needs \"nv\" of at least 2, not {}", nv));
+    if (nu < 2 || nv < 2) return;
+    const uint64_t points = static_cast<uint64_t>(nu) * static_cast<uint64_t>(nv);
+    if (Pz.size() != points) {
+      diagnostics.error(
+          Pz.given ? Pz.where : statement,
+          fmt::format("heightfield: \"Pz\" has {} values, expected {} (nu {} times nv {})", Pz.size(), points, nu, nv));
+    } else if (points > 0xffffffffu) {
+      diagnostics.error(statement, "heightfield has too many points");
+    }
+  }
+
+  bool build_mesh(const PrepareContext&, MeshData& out) override {
+    const auto columns = static_cast<uint32_t>(nu), rows = static_cast<uint32_t>(nv);
+    out.owned_positions.reserve(3 * Pz.size());
+    out.uvs.reserve(2 * Pz.size());
+    for (uint32_t y = 0; y < rows; ++y) {
+      for (uint32_t x = 0; x < columns; ++x) {
+        const double u = static_cast<double>(x) / (columns - 1), v = static_cast<double>(y) / (rows - 1);
+        out.owned_positions.insert(out.owned_positions.end(), {u, v, Pz.values[size_t{y} * columns + x]});
+        out.uvs.insert(out.uvs.end(), {static_cast<float>(u), static_cast<float>(v)});
+      }
+    }
+    out.positions = out.owned_positions;
+    for (uint32_t y = 0; y + 1 < rows; ++y) {
+      for (uint32_t x = 0; x + 1 < columns; ++x) {
+        const uint32_t a = y * columns + x, b = a + 1, c = b + columns, d = a + columns;
+        out.indices.insert(out.indices.end(), {a, b, c, a, c, d});
+      }
+    }
+    return true;
+  }
+};
+
+const Register<Heightfield> heightfield{
+    "shape",
+    "heightfield",
+    "A grid of heights over the unit square.",
+    param(&Heightfield::nu, "nu", 0, Unit::None, "Number of points along x.", kNonNegative),
+    param(&Heightfield::nv, "nv", 0, Unit::None, "Number of points along y.", kNonNegative),
+    param(&Heightfield::Pz, "Pz", Unit::Length, "The heights, row by row in x.", kCoordinates)};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,185 @@
+// A sphere around the origin, or the part of one between two heights and within a sweep around z, with the
+// parameterisation of pbrt-v3. As a light it is sampled by the cone it subtends (Shirley and Wang 1992), in
+// forms of 1 - cos that keep their digits at any distance; parts of spheres and ellipsoids are sampled by area.
+
+#include <cmath>
+#include <optional>
+
+#include "core/base/quadratic.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/shape.h"
+
+namespace whit {
+namespace {
+
+/// Two unit vectors that make a frame with the unit vector w; pbrt's choice, so that noise is alike.
+void make_frame(const Vec3d& w, Vec3d& x, Vec3d& y) {
+  x = std::abs(w.x) > std::abs(w.y) ? Vec3d(-w.z, 0, w.x) / std::sqrt(w.x * w.x + w.z * w.z)
+                                    : Vec3d(0, w.z, -w.y) / std::sqrt(w.y * w.y + w.z * w.z);
+  y = w.cross(x);
+}
+
+struct Sphere final : AnalyticShape {
+  float radius;
+  std::optional<float> zmin, zmax;
+  float phimax;
+
+  /// Also derives the numbers below, which hold from here on.
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    r_ = static_cast<double>(radius);
+    const double a = zmin ? static_cast<double>(*zmin) : -r_, b = zmax ? static_cast<double>(*zmax) : r_;
+    z_min_ = std::clamp(std::min(a, b), -r_, r_), z_max_ = std::clamp(std::max(a, b), -r_, r_);
+    if (z_min_ == z_max_) {
+      diagnostics.error(statement, "sphere has no surface between zmin and zmax", "zmin must be below zmax");
+    }
+    sweep_ = Sweep(static_cast<double>(phimax));
+    theta_at_z_min_ = std::acos(z_min_ / r_), theta_at_z_max_ = std::acos(z_max_ / r_);
+    whole_ = z_min_ == -r_ && z_max_ == r_ && phimax >= 360;
+  }
+
+  Box3d object_bounds() const override { return {{-r_, -r_, z_min_}, {r_, r_, z_max_}}; }
+
+  void intersect(const ObjectRays& rays) const override {
+    if (whole_) {
+      intersect_whole(rays);
+    } else {
+      intersect_quadric(rays, AxialQuadric{1, 1, 0, -r_ * r_}, [&](const Vec3d& p) {
+        return (z_min_ == -r_ || p.z >= z_min_) && (z_max_ == r_ || p.z <= z_max_) && sweep_.covers(p.x, p.y);
+      });
+    }
+  }
+
+  SurfacePoint surface(const Vec3d& hit) const override {
+    SurfacePoint s;
+    s.p = hit * (r_ / hit.length());
+    s.p_error = rounding_bound(s.p);
+    const double theta = std::acos(std::clamp(s.p.z / r_, -1.0, 1.0)), d_theta = theta_at_z_max_ - theta_at_z_min_;
+    s.u = sweep_.u(s.p.x, s.p.y);
+    s.v = std::clamp((theta - theta_at_z_min_) / d_theta, 0.0, 1.0);
+    // At the poles dpdu vanishes; a small radius keeps dpdu x dpdv pointing outward.
+    const double rho = std::max(std::hypot(s.p.x, s.p.y), kPole * r_);
+    const SurfaceDerivatives d =
+        revolve({rho, d_theta * s.p.z, -d_theta * rho, 0}, away_from_axis(s.p.x, s.p.y), sweep_.phi_max);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv;
+    s.dndu = d.dpdu / r_, s.dndv = d.dpdv / r_;  // The unit normal is p / r.
+    return s;
+  }
+
+  ShapeSample sample_area(double u0, double u1) const override {
+    // Archimedes: equal heights have equal areas.
+    const double height = z_max_ - z_min_, z = std::clamp(z_max_ - u0 * height, -r_, r_);
+    const double rho = std::sqrt((r_ - z) * (r_ + z)), phi = u1 * sweep_.phi_max;
+    const Vec3d p{rho * std::cos(phi), rho * std::sin(phi), z};
+    return {p, p, 1 / (sweep_.phi_max * r_ * height)};
+  }
+
+  ShapeSample sample_from(const Vec3d& ref, double u0, double u1) const override {
+    const Cone cone(*this, ref);
+    if (!whole_ || cone.stretch > kNearlyRound || !cone.is_outside()) return AnalyticShape::sample_from(ref, u0, u1);
+    return cone.stretch < kRound ? cone.sample_sphere(flips_, u0, u1) : sample_nearly_round(cone, ref, u0, u1);
+  }
+
+ private:
+  static constexpr double kPole = 1e-8;
+  static constexpr double kRound = 1e-13, kNearlyRound = 1e-2;
+
+  /// The smallest cone from a point around the sphere that surrounds the placed one.
+  struct Cone {
+    Vec3d center, w;  ///< Scene space; w is the unit axis.
+    double radius;    ///< Of the surrounding sphere.
+    double stretch;   ///< How much the placed sphere's longest radius exceeds the shortest, at most; 0 for a sphere.
+    double distance;
+
+    Cone(const Sphere& sphere, const Vec3d& ref) {
+      const Mat4d& m = sphere.object_to_scene();
+      const Vec3d x{m[0][0], m[0][1], m[0][2]}, y{m[1][0], m[1][1], m[1][2]}, z{m[2][0], m[2][1], m[2][2]};
+      // Gershgorin's circles bound the eigenvalues of M M^T, the squared stretches.
+      const double xx = x.length2(), yy = y.length2(), zz = z.length2();
+      const double xy = std::abs(x.dot(y)), yz = std::abs(y.dot(z)), zx = std::abs(z.dot(x));
+      const double most = std::max({xx + xy + zx, yy + xy + yz, zz + yz + zx});
+      const double least = std::min({xx - xy - zx, yy - xy - yz, zz - yz - zx});
+      stretch = (most - least) / most;
+      radius = std::sqrt(most) * sphere.r_;
+      center = {m[3][0], m[3][1], m[3][2]};
+      w = center - ref;
+      distance = w.length();
+      w /= distance;
+    }
+    bool is_outside() const { return distance > radius; }
+
+    double sine() const { return radius / distance; }
+    /// 1 - cos of the cone's half angle.
+    double one_minus_cos_max() const {
+      // sin^2 as a difference of squares near 1: just outside the sphere 1 - sin^2 cancels.
+      const double s = sine(), cos2 = (distance - radius) * (distance + radius) / (distance * distance);
+      return s * s / (1 + std::sqrt(cos2));
+    }
+    double pdf() const { return 1 / (2 * kPiD * one_minus_cos_max()); }
+
+    /// A point of the sphere itself, the nearer one along a direction uniform in the cone.
+    ShapeSample sample_sphere(bool flips, double u0, double u1) const {
+      const double x_max = one_minus_cos_max(), x = u0 * x_max, s = sine(), cos_theta = 1 - x;
+      // The sine of the angle of incidence is sin theta / s; its square in factors that do not cancel.
+      const double sin2 = u0 * (2 - x) / (2 - x_max), cos2 = (1 - u0) * (2 - x_max * (1 + u0)) / (2 - x_max);
+      const double sin_in = std::sqrt(sin2), cos_in = std::sqrt(std::max(cos2, 0.0));
+      // From the centre the point lies at (angle of incidence - theta) off the axis.
+      const double cos_alpha = sin2 * s + cos_theta * cos_in;
+      const double sin_alpha = sin_in * (cos_theta - s * cos_in);
+      const double phi = 2 * kPiD * u1;
+      Vec3d a, b;
+      make_frame(w, a, b);
+      const Vec3d n = -(a * (std::cos(phi) * sin_alpha) + b * (std::sin(phi) * sin_alpha) + w * cos_alpha);
+      return {center + n * radius, flips ? -n : n, pdf()};
+    }
+    Vec3d direction(double u0, double u1) const {
+      const double x = u0 * one_minus_cos_max(), sin_theta = std::sqrt(x * (2 - x)), phi = 2 * kPiD * u1;
+      Vec3d a, b;
+      make_frame(w, a, b);
+      return -(a * (std::cos(phi) * sin_theta) + b * (std::sin(phi) * sin_theta)) + w * (1 - x);
+    }
+  };
+
+  /// For a sphere under a transform that is a similarity but for rounding (matrices written with six digits): a
+  /// direction of the surrounding cone, and the point it hits, if any. The density stays exactly that of the cone.
+  ShapeSample sample_nearly_round(const Cone& cone, const Vec3d& ref, double u0, double u1) const {
+    const Vec3d o = transform_point(scene_to_object_, ref);
+    const Vec3d d = transform_vector(scene_to_object_, cone.direction(u0, u1));
+    double t0, t1;
+    if (!AxialQuadric{1, 1, 0, -r_ * r_}.roots(o, d, t0, t1) || !(t0 > 0)) return {cone.center, -cone.w, 0};
+    const Vec3d p = o + t0 * d;
+    // Normals go by the inverse transpose.
+    Vec3d n;
+    scene_to_object_.transposed().multDirMatrix(p, n);
+    n.normalize();
+    return {transform_point(object_to_scene_, p * (r_ / p.length())), flips_ ? -n : n, cone.pdf()};
+  }
+
+  void intersect_whole(const ObjectRays& rays) const {
+    const AxialQuadric quadric{1, 1, 0, -r_ * r_};
+    for_lanes(rays.n, [&](int i) {
+      double t0, t1;
+      const bool real =
+          quadric.roots({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, t0, t1);
+      const double t = t0 > rays.t_min[i] ? t0 : t1;
+      const bool hit = real & (t > rays.t_min[i]) & (t < rays.t[i]);
+      rays.t[i] = hit ? t : rays.t[i];
+    });
+  }
+
+  double r_ = 1, z_min_ = -1, z_max_ = 1, theta_at_z_min_ = kPiD, theta_at_z_max_ = 0;
+  Sweep sweep_;
+  bool whole_ = true;
+};
+
+const Register<Sphere> sphere{
+    "shape",
+    "sphere",
+    "A sphere around the origin, or a part of one.",
+    param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kPositive),
+    param(&Sphere::zmin, "zmin", Unit::Length, "Lower end of the part that is there; -radius by default."),
+    param(&Sphere::zmax, "zmax", Unit::Length, "Upper end of the part that is there; radius by default."),
+    param(&Sphere::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",
+          kPositive)};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,97 @@
+// A triangle mesh written out in the scene file: corners by index, points, and optionally normals, tangents and
+// surface parameters per point. Triangles without area are left out.
+
+#include <fmt/format.h>
+
+#include "core/plugin/registry.h"
+#include "core/plugin/shape.h"
+
+namespace whit {
+namespace {
+
+std::vector<float> to_floats(std::span<const double> values) { return {values.begin(), values.end()}; }
+
+struct TriangleMesh final : MeshShape {
+  IntegerList indices;
+  Point3List P;
+  NormalList N;
+  Vector3List S;
+  UvList uv, st;
+
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (indices.size() == 0) diagnostics.error(statement, "trianglemesh has no \"indices\"");
+    if (P.size() == 0) diagnostics.error(statement, "trianglemesh has no \"P\"");
+    if (indices.size() == 0 || P.size() == 0) return;
+    check_indices(diagnostics);
+    check_per_vertex(diagnostics, N, "N", "normals");
+    check_per_vertex(diagnostics, S, "S", "tangents");
+    if (surface_parameters().given) check_uvs(diagnostics, surface_parameters());
+  }
+
+  bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
+    out.positions = P.values;
+    out.indices.assign(indices.values.begin(), indices.values.end());
+    out.normals = to_floats(N.values);
+    out.tangents = to_floats(S.values);
+    if (surface_parameters().given) out.uvs = to_floats(surface_parameters().values.first(2 * vertex_count()));
+    if (const size_t removed = remove_degenerate_triangles(out)) {
+      ctx.diagnostics->warning(
+          indices.where,
+          fmt::format("trianglemesh has {} degenerate triangle{} (no area)", removed, removed == 1 ? "" : "s"),
+          removed == 1 ? "it is left out" : "they are left out");
+    }
+    return true;
+  }
+
+ private:
+  size_t vertex_count() const { return P.size() / 3; }
+  const UvList& surface_parameters() const { return uv.given ? uv : st; }
+
+  void check_indices(Diagnostics& diagnostics) const {
+    if (indices.size() % 3 != 0) {
+      diagnostics.error(indices.where, fmt::format("number of indices is not a multiple of three: {}", indices.size()));
+    }
+    for (const int32_t i : indices.values) {
+      if (static_cast<size_t>(i) < vertex_count()) continue;
+      return diagnostics.error(indices.where, fmt::format("trianglemesh refers to vertex index {}, but there are {} "
+                                                          "vertices in \"P\"",
+                                                          i, vertex_count()));
+    }
+  }
+
+  void check_per_vertex(Diagnostics& diagnostics, const List<double>& list, const char* name, const char* what) const {
+    if (!list.given || list.size() == P.size()) return;
+    diagnostics.error(list.where, fmt::format("\"{}\" has {} {}, but \"P\" has {} vertices", name, list.size() / 3,
+                                              what, vertex_count()));
+  }
+
+  void check_uvs(Diagnostics& diagnostics, const UvList& list) const {
+    const char* name = uv.given ? "uv" : "st";
+    if (list.size() < 2 * vertex_count()) {
+      diagnostics.error(list.where, fmt::format("\"{}\" has {} numbers, but {} vertices need {}", name, list.size(),
+                                                vertex_count(), 2 * vertex_count()));
+    } else if (list.size() > 2 * vertex_count()) {
+      diagnostics.warning(list.where,
+                          fmt::format("\"{}\" has {} numbers, but {} vertices need only {}", name, list.size(),
+                                      vertex_count(), 2 * vertex_count()),
+                          "the rest is not used");
+    }
+  }
+};
+
+const Register<TriangleMesh> trianglemesh{
+    "shape",
+    "trianglemesh",
+    "A triangle mesh given in the scene file.",
+    param(&TriangleMesh::indices, "indices", Unit::None, "Three vertex numbers per triangle, counted from 0.",
+          kNonNegative),
+    param(&TriangleMesh::P, "P", Unit::Length, "The vertices.", kCoordinates),
+    param(&TriangleMesh::N, "N", Unit::None, "Shading normals, one per vertex.", kCoordinates),
+    param(&TriangleMesh::S, "S", Unit::None, "Shading tangents, one per vertex.", kCoordinates),
+    param(&TriangleMesh::uv, "uv", Unit::None, "Surface parameters, one pair per vertex.", kCoordinates),
+    param(&TriangleMesh::st, "st", Unit::None, "Another name of uv, used when uv is absent.", kCoordinates),
+    alpha_param(),
+    shadowalpha_param()};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,75 @@
+// A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters. The file is decoded when a
+// ray first meets it.
+#include "core/image/image.h"
+#include "core/image/texture_store.h"
+#include "core/plugin/texture_channels.h"
+#include "core/plugin/texture_mapping.h"
+
+namespace whit {
+namespace {
+
+template <class T>
+class ImageMap : public Texture2D<T> {
+ public:
+  FileName filename;
+  Choice wrap;  // in the order of WrapMode
+  std::optional<bool> gamma;
+  float scale = 1, maxanisotropy = 8;
+  bool trilinear = false;
+
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
+  }
+  EffectSet effects() const override { return {Effect::TextureFiltering}; }
+
+  bool prepare(const PrepareContext& ctx) override {
+    if (const Result<ImageInfo> info = probe_image(filename.path); !info.ok()) {
+      ctx.diagnostics->file_error(filename.where, info.error);
+      return false;
+    }
+    TextureSpec spec;
+    spec.path = filename.path;
+    spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;
+    spec.wrap = static_cast<WrapMode>(wrap.index);
+    spec.gamma = gamma.value_or(default_gamma(filename.path));
+    spec.scale = scale;
+    spec.trilinear = trilinear;
+    spec.max_anisotropy = maxanisotropy;
+    image_ = ctx.textures->add(spec);
+    return Texture2D<T>::prepare(ctx);
+  }
+
+  void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
+    const ArenaScope scratch(*s.arena);
+    const MappedPoints m = this->map_.map(s);
+    if constexpr (kChannels<T> == 1) image_->lookup_float(s.n, m.s, m.t, m.dsdx, m.dtdx, m.dsdy, m.dtdy, out);
+    else image_->lookup(s.n, m.s, m.t, m.dsdx, m.dtdx, m.dsdy, m.dtdy, out.r, out.g, out.b);
+  }
+
+ private:
+  const ImageTexture* image_ = nullptr;
+};
+
+constexpr const char* kDoc = "A picture, looked up by texture coordinates; t = 0 is its bottom row.";
+
+template <class T>
+class RegisterImageMap : public Register2D<ImageMap<T>, T> {
+  using I = ImageMap<T>;
+
+ public:
+  explicit RegisterImageMap(const char* category)
+      : Register2D<I, T>(
+            category, "imagemap", kDoc, param(&I::filename, "filename", Unit::None, "The picture's file."),
+            choice(&I::wrap, "wrap", {"repeat", "black", "clamp"}, "What lies outside the unit square."),
+            param(&I::gamma, "gamma", Unit::None, "Decode sRGB; when not given, for png and tga files only."),
+            param(&I::scale, "scale", 1.0f, Unit::None, "Multiplies every value, after decoding."),
+            param(&I::trilinear, "trilinear", false, Unit::None, "Square footprints instead of elliptic ones."),
+            param(&I::maxanisotropy, "maxanisotropy", 8.0f, Unit::None,
+                  "Longest to shortest axis of an elliptic footprint.", kPositive)) {}
+};
+
+const RegisterImageMap<float> imagemap_float{"float texture"};
+const RegisterImageMap<RGB> imagemap_spectrum{"spectrum texture"};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,46 @@
+// A linear blend of two textures.
+#include "core/plugin/registry.h"
+#include "core/plugin/texture_channels.h"
+
+namespace whit {
+namespace {
+
+template <class T>
+class Mix : public Texture<T> {
+ public:
+  Tex<T> tex1, tex2;
+  Tex<float> amount;
+
+  std::optional<T> constant() const override {
+    if (tex1.is_constant() && tex2.is_constant() && tex1.value() == tex2.value()) return tex1.value();
+    if (amount.is_constant() && amount.value() == 0 && tex1.is_constant()) return tex1.value();
+    if (amount.is_constant() && amount.value() == 1 && tex2.is_constant()) return tex2.value();
+    if (tex1.is_constant() && tex2.is_constant() && amount.is_constant())
+      return blend(tex1.value(), tex2.value(), amount.value());
+    return std::nullopt;
+  }
+  EffectSet effects() const override { return (tex1.effects() |= tex2.effects()) |= amount.effects(); }
+  void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
+    const ArenaScope scratch(*s.arena);
+    blend<T>(s.n, tex1(s), tex2(s), amount(s), out);
+  }
+};
+
+constexpr const char* kDoc = "A linear blend: (1 - amount) tex1 + amount tex2.";
+constexpr const char* kAmount = "Share of tex2.";
+
+const Register<Mix<float>> mix_float{"float texture",
+                                     "mix",
+                                     kDoc,
+                                     param(&Mix<float>::tex1, "tex1", 0.0f, Unit::None, "Value at amount 0."),
+                                     param(&Mix<float>::tex2, "tex2", 1.0f, Unit::None, "Value at amount 1."),
+                                     param(&Mix<float>::amount, "amount", 0.5f, Unit::None, kAmount)};
+const Register<Mix<RGB>> mix_spectrum{"spectrum texture",
+                                      "mix",
+                                      kDoc,
+                                      param(&Mix<RGB>::tex1, "tex1", RGB(0.0f), Unit::None, "Value at amount 0."),
+                                      param(&Mix<RGB>::tex2, "tex2", RGB(1.0f), Unit::None, "Value at amount 1."),
+                                      param(&Mix<RGB>::amount, "amount", 0.5f, Unit::None, kAmount)};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,39 @@
+// The product of two textures.
+#include "core/plugin/registry.h"
+#include "core/plugin/texture_channels.h"
+
+namespace whit {
+namespace {
+
+template <class T>
+class Scale : public Texture<T> {
+ public:
+  Tex<T> tex1, tex2;
+
+  std::optional<T> constant() const override {
+    if (tex1.is_constant() && tex2.is_constant()) return tex1.value() * tex2.value();
+    return std::nullopt;
+  }
+  EffectSet effects() const override { return tex1.effects() |= tex2.effects(); }
+  void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
+    const ArenaScope scratch(*s.arena);
+    const auto a = tex1(s), b = tex2(s);
+    for (int c = 0; c < kChannels<T>; ++c) {
+      const float *const x = channel(a, c), *const y = channel(b, c);
+      float* const result = channel(out, c);
+      for_lanes(s.n, [&](int i) { result[i] = x[i] * y[i]; });
+    }
+  }
+};
+
+constexpr const char* kDoc = "The product of two textures.";
+
+const Register<Scale<float>> scale_float{"float texture", "scale", kDoc,
+                                         param(&Scale<float>::tex1, "tex1", 1.0f, Unit::None, "First factor."),
+                                         param(&Scale<float>::tex2, "tex2", 1.0f, Unit::None, "Second factor.")};
+const Register<Scale<RGB>> scale_spectrum{"spectrum texture", "scale", kDoc,
+                                          param(&Scale<RGB>::tex1, "tex1", RGB(1.0f), Unit::None, "First factor."),
+                                          param(&Scale<RGB>::tex2, "tex2", RGB(1.0f), Unit::None, "Second factor.")};
+
+}  // namespace
+}  // namespace whit

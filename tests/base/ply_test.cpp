@@ -1,0 +1,221 @@
+#include "core/base/ply.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace whit {
+namespace {
+
+enum class Order { Little, Big };
+
+/// The bytes of a value in the given order.
+template <class T>
+std::string bytes(Order order, T value) {
+  std::string s(sizeof(T), '\0');
+  std::memcpy(s.data(), &value, sizeof(T));
+  if ((order == Order::Big) == (std::endian::native == std::endian::little)) std::reverse(s.begin(), s.end());
+  return s;
+}
+
+const char* const kXyz = "property float x\nproperty float y\nproperty float z\n";
+const char* const kFaces = "property list uchar int vertex_indices\nend_header\n";
+
+std::string header(const char* format, int vertices, const std::string& properties, int faces,
+                   const std::string& face_properties = kFaces) {
+  return std::string("ply\nformat ") + format + " 1.0\ncomment made by a test\nelement vertex " +
+         std::to_string(vertices) + "\n" + properties + "element face " + std::to_string(faces) + "\n" +
+         face_properties;
+}
+
+/// A square of two triangles: vertices (0,0,0) (1,0,0) (1,1,0.5) (0,1,0.25).
+const double kSquare[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0.25}};
+
+template <class Coordinate, class Count, class Index>
+std::string binary_square(Order order, const char* coordinate, const char* count, const char* index) {
+  const std::string c(coordinate);
+  std::string s = header(order == Order::Big ? "binary_big_endian" : "binary_little_endian", 4,
+                         "property " + c + " x\nproperty " + c + " y\nproperty " + c + " z\n", 2,
+                         std::string("property list ") + count + " " + index + " vertex_indices\nend_header\n");
+  for (const auto& v : kSquare)
+    for (const double x : v) s += bytes(order, static_cast<Coordinate>(x));
+  for (const auto& f : {std::vector<int>{0, 1, 2}, std::vector<int>{0, 2, 3}}) {
+    s += bytes(order, static_cast<Count>(3));
+    for (const int i : f) s += bytes(order, static_cast<Index>(i));
+  }
+  return s;
+}
+
+void expect_square(const std::string& file) {
+  PlyMesh mesh;
+  ASSERT_EQ(parse_ply(file, mesh), "");
+  ASSERT_EQ(mesh.positions.size(), 12u);
+  for (size_t i = 0; i < 12; ++i) EXPECT_EQ(mesh.positions[i], kSquare[i / 3][i % 3]);
+  EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+  EXPECT_EQ(mesh.skipped_faces, 0u);
+  EXPECT_TRUE(mesh.normals.empty());
+  EXPECT_TRUE(mesh.uvs.empty());
+}
+
+std::string error_of(const std::string& file) {
+  PlyMesh mesh;
+  return parse_ply(file, mesh);
+}
+
+TEST(Ply, Ascii) {
+  const std::string data = "0 0 0\n1 0 0\n1 1 .5\n0 1 2.5e-1\n3 0 1 2\n3 0 2 3";
+  expect_square(header("ascii", 4, kXyz, 2) + data);
+  expect_square(header("ascii", 4, kXyz, 2) + data + "\n");
+  std::string windows;
+  for (const char c : header("ascii", 4, kXyz, 2) + data) windows += c == '\n' ? "\r\n" : std::string(1, c);
+  expect_square(windows);
+  expect_square(header("ascii", 4, kXyz, 2, "property list uchar int vertex_index\nend_header\n") + data);
+  expect_square(header("ascii", 4, kXyz, 2) + "+0 -0 0 1 0 0\t1 1 .5  0 1 0.25\n\n 3 0 1 2 3 0 2 3");
+}
+
+TEST(Ply, BinaryOfAllTypesAndOrders) {
+  for (const Order order : {Order::Little, Order::Big}) {
+    expect_square(binary_square<float, uint8_t, int32_t>(order, "float", "uchar", "int"));
+    expect_square(binary_square<float, uint8_t, uint32_t>(order, "float32", "uint8", "uint32"));
+    expect_square(binary_square<double, uint8_t, int16_t>(order, "double", "char", "short"));
+    expect_square(binary_square<double, uint32_t, uint16_t>(order, "float64", "uint", "ushort"));
+    expect_square(binary_square<float, int16_t, uint8_t>(order, "float", "int16", "uchar"));
+  }
+}
+
+TEST(Ply, PropertiesInAnyOrderWithStrangersBetween) {
+  // An element before, a list among the vertex properties, colours, and a flag after the face's list.
+  const std::string head =
+      "ply\nformat binary_little_endian 1.0\nobj_info x\nelement camera 2\nproperty list uchar short a\nproperty "
+      "double b\n"
+      "element vertex 3\nproperty uchar red\nproperty float t\nproperty double z\nproperty float nz\nproperty float "
+      "nx\n";
+  const Order o = Order::Little;
+  for (const bool list : {false, true}) {
+    std::string s =
+        head + (list ? "property list uchar float weights\n" : "") +
+        "property float ny\nproperty float y\nproperty short x\nproperty float s\nelement face 1\n"
+        "property float quality\nproperty list int ushort vertex_indices\nproperty uchar flag\nend_header\n";
+    for (int i = 0; i < 2; ++i) s += bytes(o, uint8_t{1}) + bytes(o, int16_t{7}) + bytes(o, 1.0);
+    for (int i = 0; i < 3; ++i) {
+      const float f = static_cast<float>(i);
+      s += bytes(o, uint8_t{9}) + bytes(o, 0.5f + f) + bytes(o, 30.0 + i) + bytes(o, 300 + f) + bytes(o, 100 + f);
+      if (list) s += bytes(o, uint8_t{2}) + bytes(o, 1.f) + bytes(o, 2.f);
+      s += bytes(o, 200 + f) + bytes(o, 20 + f) + bytes(o, static_cast<int16_t>(10 + i)) + bytes(o, 0.25f + f);
+    }
+    s += bytes(o, 1.f) + bytes(o, int32_t{3});
+    for (const int i : {2, 1, 0}) s += bytes(o, static_cast<uint16_t>(i));
+    s += bytes(o, uint8_t{1});
+    PlyMesh mesh;
+    ASSERT_EQ(parse_ply(s, mesh), "");
+    EXPECT_EQ(mesh.positions, (std::vector<double>{10, 20, 30, 11, 21, 31, 12, 22, 32}));
+    EXPECT_EQ(mesh.normals, (std::vector<float>{100, 200, 300, 101, 201, 301, 102, 202, 302}));
+    EXPECT_EQ(mesh.uvs, (std::vector<float>{0.25f, 0.5f, 1.25f, 1.5f, 2.25f, 2.5f}));
+    EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{2, 1, 0}));
+  }
+}
+
+TEST(Ply, NamesOfSurfaceParameters) {
+  for (const auto& [u, v] : {std::pair{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}}) {
+    PlyMesh mesh;
+    const std::string uv = std::string("property float ") + u + "\nproperty float " + v + "\n";
+    ASSERT_EQ(parse_ply(header("ascii", 3, kXyz + uv, 1) + "0 0 0 .1 .2 1 0 0 .3 .4 0 1 0 .5 .6 3 0 1 2", mesh), "");
+    EXPECT_EQ(mesh.uvs, (std::vector<float>{.1f, .2f, .3f, .4f, .5f, .6f}));
+  }
+}
+
+TEST(Ply, QuadsAreSplitAsPbrtDoesAndPolygonsSkipped) {
+  PlyMesh mesh;
+  ASSERT_EQ(parse_ply(header("ascii", 5, kXyz, 4) +
+                          "0 0 0 1 0 0 1 1 0 0 1 0 .5 2 0\n4 0 1 2 3\n5 0 1 2 4 3\n2 0 1\n3 2 4 3\n",
+                      mesh),
+            "");
+  EXPECT_EQ(mesh.indices, (std::vector<uint32_t>{0, 1, 2, 3, 0, 2, 2, 4, 3}));
+  EXPECT_EQ(mesh.skipped_faces, 2u);
+}
+
+TEST(Ply, EveryTruncationIsAnError) {
+  for (const std::string& whole : {binary_square<float, uint8_t, int32_t>(Order::Little, "float", "uchar", "int"),
+                                   binary_square<double, uint32_t, uint16_t>(Order::Big, "double", "uint", "ushort")}) {
+    for (size_t n = 0; n < whole.size(); ++n) { EXPECT_NE(error_of(whole.substr(0, n)), "") << n; }
+    EXPECT_NE(error_of(whole.substr(0, whole.size() - 1)).find("PLY data ends early"), std::string::npos);
+  }
+  const std::string ascii = header("ascii", 3, kXyz, 1) + "0 0 0 1 0 0 0 1 0 3 0 1";
+  EXPECT_EQ(error_of(ascii), "PLY data ends early");
+  EXPECT_EQ(error_of(ascii + " 2"), "");
+}
+
+TEST(Ply, LyingCountsAreRefusedBeforeAllocating) {
+  const std::string huge = "PLY header promises more than the file holds";
+  for (const char* format : {"ascii", "binary_little_endian"}) {
+    std::string s = std::string("ply\nformat ") + format + " 1.0\nelement vertex 4000000000\n" + kXyz +
+                    "element face 1\n" + kFaces + "0 0 0";
+    EXPECT_NE(error_of(s).find(huge), std::string::npos) << error_of(s);
+    s = std::string("ply\nformat ") + format + " 1.0\nelement vertex 3\n" + kXyz +
+        "element face 18446744073709551615\n" + kFaces + std::string(100, '0');
+    EXPECT_NE(error_of(s).find(huge), std::string::npos) << error_of(s);
+  }
+  EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement x 99999999999\nelement vertex 3\n" + std::string(kXyz) +
+                     "element face 1\n" + kFaces + "0 0 0 1 0 0 0 1 0 3 0 1 2"),
+            "");
+}
+
+TEST(Ply, BadContentsAreErrors) {
+  const std::string three = "0 0 0 1 0 0 0 1 0 ";
+  const auto says = [&](const std::string& file, const char* what) {
+    EXPECT_NE(error_of(file).find(what), std::string::npos) << "\"" << error_of(file) << "\" should say " << what;
+  };
+  says("", "not a PLY file");
+  says("hello", "not a PLY file");
+  says("\x89PNG\r\n\x1a\n", "not a PLY file");
+  says("ply\nformat ascii 1.0\n", "header ends early");
+  says(header("ascii", 3, kXyz, 1) + three + "3 0 1 900", "does not exist: 900; the file has 3 vertices");
+  says(header("ascii", 3, kXyz, 1) + three + "3 0 1 -1", "negative");
+  says(header("ascii", 3, kXyz, 1) + three + "3 0 1 99999999999", "does not exist");
+  says(header("ascii", 3, kXyz, 1) + "0 0 nan 1 0 0 0 1 0 3 0 1 2", "not finite");
+  says(header("ascii", 3, kXyz, 1) + "0 0 1e999 1 0 0 0 1 0 3 0 1 2", "not finite");
+  says(header("ascii", 3, kXyz, 1) + "0 0 zero 1 0 0 0 1 0 3 0 1 2", "no number in \"zero\"");
+  says(header("ascii", 3, "property float x\nproperty float y\n", 1) + "0 0 1 1 2 2 3 0 1 2", "lack x, y or z");
+  says(header("ascii", 3, kXyz, 1, "property int i\nend_header\n") + three + "1", "lack \"vertex_indices\"");
+  says(header("ascii", 3, kXyz, 1, "property list uchar float vertex_indices\nend_header\n") + three + "3 0 1 2",
+       "integers");
+  says(header("ascii", 3, kXyz, 0) + three, "no faces");
+  says(header("ascii", 0, kXyz, 1) + "3 0 1 2", "no vertices");
+  says(header("utf8", 3, kXyz, 1) + three + "3 0 1 2", "format is unknown");
+  says("ply\nformat ascii 1.0\nelement vertex x\n", "count is no number");
+  says("ply\nformat ascii 1.0\nproperty float x\n", "before the first element");
+  says("ply\nformat ascii 1.0\nelement vertex 3\nproperty half x\n", "type is unknown");
+  says("ply\nelement vertex 3\n" + std::string(kXyz) + "element face 1\n" + kFaces + three + "3 0 1 2",
+       "no \"format\"");
+  // A negative index in the fast path.
+  std::string s = binary_square<float, uint8_t, int32_t>(Order::Little, "float", "uchar", "int");
+  s.replace(s.size() - 4, 4, bytes(Order::Little, int32_t{-7}));
+  says(s, "does not exist");
+}
+
+TEST(Ply, TinyNumbersAreZeroNotErrors) {
+  PlyMesh mesh;
+  EXPECT_EQ(parse_ply(header("ascii", 3, kXyz, 1) + "0 0 1e-999 1 0 0 0 1 0 3 0 1 2", mesh), "");
+  EXPECT_EQ(mesh.positions[2], 0);
+}
+
+TEST(Ply, GarbageAfterAnyByteNeverCrashes) {
+  const std::string whole = binary_square<float, uint8_t, int32_t>(Order::Little, "float", "uchar", "int");
+  uint32_t state = 1;
+  for (size_t at = 0; at < whole.size(); ++at) {
+    for (int k = 0; k < 8; ++k) {
+      std::string s = whole;
+      s[at] = static_cast<char>((state = state * 1664525u + 1013904223u) >> 24);
+      PlyMesh mesh;
+      if (!parse_ply(s, mesh).empty()) continue;
+      for (const uint32_t i : mesh.indices) EXPECT_LT(i, mesh.positions.size() / 3);
+      for (const double x : mesh.positions) EXPECT_TRUE(std::isfinite(x));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace whit

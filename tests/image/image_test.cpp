@@ -1,0 +1,158 @@
+// Reading: orientation, raw values, alpha left alone, errors that name file and reason.
+#include "core/image/image.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+
+namespace whit {
+namespace {
+
+std::string temp(const std::string& name) { return testing::TempDir() + "/whit_image_" + name; }
+
+std::string write_bytes(const std::string& name, const std::string& bytes) {
+  std::ofstream(temp(name), std::ios::binary) << bytes;
+  return temp(name);
+}
+
+std::string floats(const std::vector<float>& values) {
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+// A true-colour TGA; `pixels` in file order, BGR or BGRA; `descriptor` holds alpha bits and the origin bit 0x20.
+std::string tga(int width, int height, int bits, int descriptor, const std::string& pixels) {
+  std::string h(18, '\0');
+  h[2] = 2;
+  h[12] = static_cast<char>(width);
+  h[14] = static_cast<char>(height);
+  h[16] = static_cast<char>(bits);
+  h[17] = static_cast<char>(descriptor);
+  return h + pixels;
+}
+
+std::string write_with_oiio(const std::string& name, OIIO::ImageSpec spec, const std::vector<unsigned char>& bytes) {
+  auto out = OIIO::ImageOutput::create(temp(name));
+  EXPECT_TRUE(out && out->open(temp(name), spec) && out->write_image(OIIO::TypeDesc::UINT8, bytes.data()) &&
+              out->close());
+  return temp(name);
+}
+
+TEST(ReadImage, pfm_rows_come_top_first) {
+  // A PFM stores the bottom row first; here that is (1, 2, 3).
+  const auto r = read_image(write_bytes("o.pfm", "PF\n1 2\n-1.0\n" + floats({1, 2, 3, 40, 50, 60})));
+  ASSERT_TRUE(r.ok()) << r.error;
+  EXPECT_EQ(r.value.pixels, (std::vector<float>{40, 50, 60, 1, 2, 3}));
+  EXPECT_EQ(r.value.format, SampleFormat::Float);
+}
+
+TEST(ReadImage, pfm_scale_multiplies_and_grey_has_one_channel) {
+  const auto r = read_image(write_bytes("g.pfm", "Pf\n2 1\n-2.0\n" + floats({0.25f, 3})));
+  ASSERT_TRUE(r.ok()) << r.error;
+  EXPECT_EQ(r.value.channels, 1);
+  EXPECT_EQ(r.value.pixels, (std::vector<float>{0.5f, 6}));  // as pbrt-v3 does
+}
+
+TEST(ReadImage, tga_of_24_bits_bottom_up) {
+  // File order: bottom row red (BGR 0,0,255), top row 51 of blue; no origin bit means bottom first.
+  const auto r = read_image(write_bytes("b.tga", tga(1, 2, 24, 0, std::string("\0\0\xff\x33\0\0", 6))));
+  ASSERT_TRUE(r.ok()) << r.error;
+  ASSERT_EQ(r.value.channels, 3);
+  EXPECT_EQ(r.value.pixels, (std::vector<float>{0, 0, 0.2f, 1, 0, 0}));
+  EXPECT_EQ(r.value.format, SampleFormat::UInt8);
+}
+
+TEST(ReadImage, tga_of_32_bits_top_down_ignores_alpha) {
+  // Top row: BGRA 51, 102, 153 with alpha 0; bottom row 255, 0, 0 with alpha 51. Premultiplied they would be 0 and 0.2.
+  const auto r = read_image(write_bytes("a.tga", tga(1, 2, 32, 0x28, std::string("\x33\x66\x99\0\xff\0\0\x33", 8))));
+  ASSERT_TRUE(r.ok()) << r.error;
+  const auto rgb = r.value.rgb_channels();
+  EXPECT_FLOAT_EQ(r.value.pixel(0, 0)[rgb[0]], 0.6f);
+  EXPECT_FLOAT_EQ(r.value.pixel(0, 0)[rgb[1]], 0.4f);
+  EXPECT_FLOAT_EQ(r.value.pixel(0, 0)[rgb[2]], 0.2f);
+  EXPECT_FLOAT_EQ(r.value.pixel(0, 1)[rgb[2]], 1.0f);
+}
+
+TEST(ReadImage, png_alpha_is_not_multiplied_in) {
+  OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  const auto r = read_image(write_with_oiio("alpha.png", spec, {255, 51, 0, 0, 102, 0, 255, 51}));
+  ASSERT_TRUE(r.ok()) << r.error;
+  EXPECT_EQ(r.value.channels, 4);
+  EXPECT_EQ(r.value.pixels, (std::vector<float>{1, 0.2f, 0, 0, 0.4f, 0, 1, 0.2f}));
+}
+
+TEST(ReadImage, grey_with_alpha_is_grey) {
+  OIIO::ImageSpec spec(1, 1, 2, OIIO::TypeDesc::UINT8);
+  spec.attribute("oiio:UnassociatedAlpha", 1);
+  spec.channelnames = {"Y", "A"};
+  spec.alpha_channel = 1;
+  const auto r = read_image(write_with_oiio("ya.png", spec, {51, 0}));
+  ASSERT_TRUE(r.ok()) << r.error;
+  EXPECT_EQ(r.value.rgb_channels(), (std::vector<int>{0, 0, 0}));
+  EXPECT_FLOAT_EQ(r.value.pixels[0], 0.2f);
+}
+
+TEST(ReadImage, colour_channels_are_found_by_name) {
+  ImageInfo info;
+  info.channels = 5;
+  info.channel_names = {"B", "A", "G", "Z", "R"};
+  EXPECT_EQ(info.rgb_channels(), (std::vector<int>{4, 2, 0}));
+  info.channel_names = {"a", "b", "c", "d", "e"};
+  EXPECT_EQ(info.rgb_channels(), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(info.channel("c"), 2);
+  EXPECT_EQ(info.channel("C"), -1);
+}
+
+TEST(ReadImage, jpeg_tiff_and_hdr_are_read) {
+  OIIO::ImageSpec spec(8, 8, 3, OIIO::TypeDesc::UINT8);
+  const std::vector<unsigned char> grey(8 * 8 * 3, 102);
+  for (const char* name : {"x.jpg", "x.tif", "x.hdr"}) {
+    const auto r = read_image(write_with_oiio(name, spec, grey));
+    ASSERT_TRUE(r.ok()) << r.error;
+    EXPECT_NEAR(r.value.pixel(3, 5)[1], 0.4f, 0.005f) << name;  // raw: 102/255, not decoded
+  }
+}
+
+TEST(ReadImage, errors_name_the_file_and_the_reason) {
+  const auto expect = [](const std::string& path, const std::string& reason) {
+    for (const std::string& error : {read_image(path).error, probe_image(path).error}) {
+      EXPECT_NE(error.find("\"" + path + "\""), std::string::npos) << error;
+      EXPECT_NE(error.find(reason), std::string::npos) << error;
+    }
+  };
+  expect("/nowhere/x.png", "no such file");
+  expect(testing::TempDir(), "folder");
+  expect(write_bytes("empty.png", ""), "empty");
+  expect(write_bytes("noise.png", std::string(300, 'q')), ": ");
+  expect(write_bytes("noise.exr", std::string(300, 'q')), ": ");
+  // 60000 x 60000 pixels in 18 bytes.
+  std::string lying = tga(0, 0, 24, 0, "abc");
+  lying[12] = lying[14] = '\x60';
+  lying[13] = lying[15] = '\xea';
+  expect(write_bytes("lying.tga", lying), "claims");
+}
+
+TEST(ReadImage, a_truncated_file_is_an_error) {
+  const std::string whole = "PF\n64 64\n-1.0\n" + floats(std::vector<float>(64 * 64 * 3, 0.5f));
+  EXPECT_FALSE(read_image(write_bytes("cut.pfm", whole.substr(0, whole.size() / 2))).ok());
+  const std::string targa = tga(64, 64, 24, 0, std::string(64 * 64 * 3 / 2, 'x'));
+  EXPECT_FALSE(read_image(write_bytes("cut.tga", targa)).ok());
+}
+
+TEST(ProbeImage, tells_the_size_without_reading_pixels) {
+  // Only the header is there: probing works, reading does not.
+  const std::string path = write_bytes("head.pfm", "PF\n7 5\n-1.0\n" + floats({0}));
+  const auto r = probe_image(path);
+  ASSERT_TRUE(r.ok()) << r.error;
+  EXPECT_EQ(r.value.width, 7);
+  EXPECT_EQ(r.value.height, 5);
+  EXPECT_EQ(r.value.channels, 3);
+  EXPECT_EQ(r.value.full_width, 7);
+}
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,304 @@
+// The filters against a plain double-precision version of the formulas, and the cases that break filters.
+#include "core/image/mipmap.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace whit {
+namespace {
+
+Image picture(int width, int height, int channels, SampleFormat format = SampleFormat::Float, unsigned seed = 1) {
+  Image image;
+  image.width = width;
+  image.height = height;
+  image.channels = channels;
+  image.format = format;
+  image.channel_names = channels == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+  std::mt19937 random(seed);
+  for (int i = 0; i < width * height * channels; ++i) image.pixels.push_back(static_cast<float>(random() % 256) / 255);
+  return image;
+}
+
+// One channel, powers of two: the pyramid and the filters, straight from the book, in double precision.
+struct Reference {
+  struct Level {
+    int w, h;
+    std::vector<double> v;
+  };
+  std::vector<Level> levels;
+  WrapMode wrap;
+
+  Reference(const Image& image, WrapMode mode) : wrap(mode) {
+    levels.push_back({image.width, image.height, {image.pixels.begin(), image.pixels.end()}});
+    while (levels.back().w > 1 || levels.back().h > 1) {
+      const int l = last();
+      Level next{std::max(1, levels[l].w / 2), std::max(1, levels[l].h / 2), {}};
+      for (int t = 0; t < next.h; ++t)
+        for (int s = 0; s < next.w; ++s)
+          next.v.push_back((texel(l, 2 * s, 2 * t) + texel(l, 2 * s + 1, 2 * t) + texel(l, 2 * s, 2 * t + 1) +
+                            texel(l, 2 * s + 1, 2 * t + 1)) /
+                           4);
+      levels.push_back(next);
+    }
+  }
+  int last() const { return static_cast<int>(levels.size()) - 1; }
+  double texel(int level, int s, int t) const {
+    const Level& l = levels[static_cast<size_t>(level)];
+    if (wrap == WrapMode::Repeat) s = ((s % l.w) + l.w) % l.w, t = ((t % l.h) + l.h) % l.h;
+    if (wrap == WrapMode::Clamp) s = std::clamp(s, 0, l.w - 1), t = std::clamp(t, 0, l.h - 1);
+    if (s < 0 || s >= l.w || t < 0 || t >= l.h) return 0;
+    return l.v[static_cast<size_t>(t * l.w + s)];
+  }
+  double bilinear(int level, double s, double t) const {
+    s = s * levels[static_cast<size_t>(level)].w - 0.5;
+    t = t * levels[static_cast<size_t>(level)].h - 0.5;
+    const int x = static_cast<int>(std::floor(s)), y = static_cast<int>(std::floor(t));
+    const double a = s - x, b = t - y;
+    return (1 - a) * (1 - b) * texel(level, x, y) + a * (1 - b) * texel(level, x + 1, y) +
+           (1 - a) * b * texel(level, x, y + 1) + a * b * texel(level, x + 1, y + 1);
+  }
+  double trilinear(double s, double t, double width) const {
+    const double level = last() + std::log2(std::max(width, 1e-8));
+    if (level < 0) return bilinear(0, s, t);
+    if (level >= last()) return texel(last(), 0, 0);
+    const int l = static_cast<int>(level);
+    return (1 - (level - l)) * bilinear(l, s, t) + (level - l) * bilinear(l + 1, s, t);
+  }
+  // Weighs every texel within 64 of st, without a bounding box.
+  double ewa_level(int level, double s, double t, const double (&d)[2][2]) const {
+    if (level > last()) return texel(last(), 0, 0);
+    const double w = levels[static_cast<size_t>(level)].w, h = levels[static_cast<size_t>(level)].h;
+    s = s * w - 0.5;
+    t = t * h - 0.5;
+    double A = 1, B = 0, C = 1;
+    for (const auto& axis : d) {
+      A += axis[1] * h * axis[1] * h;
+      B -= 2 * axis[0] * w * axis[1] * h;
+      C += axis[0] * w * axis[0] * w;
+    }
+    const double F = A * C - B * B / 4;
+    double sum = 0, weights = 0;
+    for (int y = int(t) - 64; y <= int(t) + 64; ++y)
+      for (int x = int(s) - 64; x <= int(s) + 64; ++x) {
+        const double r2 = (A * (x - s) * (x - s) + B * (x - s) * (y - t) + C * (y - t) * (y - t)) / F;
+        if (r2 >= 1) continue;
+        const double weight = std::exp(-2 * std::min(std::floor(r2 * 128), 127.0) / 127) - std::exp(-2.0);
+        sum += weight * texel(level, x, y);
+        weights += weight;
+      }
+    return sum / weights;
+  }
+  double ewa(double s, double t, double dsdx, double dtdx, double dsdy, double dtdy, double anisotropy) const {
+    double d[2][2] = {{dsdx, dtdx}, {dsdy, dtdy}};
+    if (std::hypot(dsdx, dtdx) < std::hypot(dsdy, dtdy)) std::swap(d[0], d[1]);
+    const double major = std::hypot(d[0][0], d[0][1]);
+    double minor = std::hypot(d[1][0], d[1][1]);
+    if (minor * anisotropy < major && minor > 0) {
+      const double scale = major / (minor * anisotropy);
+      d[1][0] *= scale, d[1][1] *= scale, minor *= scale;
+    }
+    if (minor == 0) return bilinear(0, s, t);
+    const double lod = std::max(0.0, last() + std::log2(minor));
+    const int l = static_cast<int>(std::min(lod, 100.0));
+    return (1 - (lod - l)) * ewa_level(l, s, t, d) + (lod - l) * ewa_level(l + 1, s, t, d);
+  }
+};
+
+// n random points; footprints from below a texel to all of the texture, of any shape.
+struct Points {
+  std::vector<float> s, t, dsdx, dtdx, dsdy, dtdy;
+  explicit Points(int n) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<float> place(-1.3f, 2.3f), sign(-1, 1), size(-10, 1);
+    for (int i = 0; i < n; ++i) {
+      s.push_back(place(random));
+      t.push_back(place(random));
+      const float a = std::exp2(size(random)), b = std::exp2(size(random));
+      dsdx.push_back(a * sign(random));
+      dtdx.push_back(a * sign(random));
+      dsdy.push_back(b * sign(random));
+      dtdy.push_back(b * sign(random));
+    }
+  }
+  LookupPoints view(size_t first = 0, int n = -1) const {
+    return {n < 0 ? static_cast<int>(s.size()) : n,
+            &s[first],
+            &t[first],
+            &dsdx[first],
+            &dtdx[first],
+            &dsdy[first],
+            &dtdy[first]};
+  }
+};
+
+std::vector<float> look(const MipMap& map, const LookupPoints& points, const MipFilter& filter) {
+  std::vector<float> r(static_cast<size_t>(points.n)), g = r, b = r;
+  float* const out[3] = {r.data(), g.data(), b.data()};
+  map.lookup(points, filter, out);
+  return r;
+}
+
+const WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp};
+
+TEST(MipMap, pyramid_shape) {
+  const MipMap map(picture(8, 2, 3), {});
+  EXPECT_EQ(map.level_count(), 4);
+  EXPECT_EQ(map.width(3), 1);
+  EXPECT_EQ(map.height(0), 2);
+  EXPECT_EQ(map.height(1), 1);
+  EXPECT_EQ(map.bytes(), (16u + 4 + 2 + 1) * 3 * sizeof(float));
+  EXPECT_EQ(MipMap(picture(5, 3, 3), {}).width(), 8);
+}
+
+TEST(MipMap, bilinear_by_hand) {
+  // Texels 0.25, 0.5 / 1, 2; centres at 0.25 and 0.75. The middle is their mean, 0.9375.
+  Image image = picture(2, 2, 1);
+  image.pixels = {0.25f, 0.5f, 1, 2};
+  const float s[] = {0.5f, 0.25f, 0.75f, 0.25f}, t[] = {0.5f, 0.25f, 0.25f, 0.75f};
+  const LookupPoints points{4, s, t};
+  EXPECT_EQ(look(MipMap(image, {.flip = false}), points, {}), (std::vector<float>{0.9375f, 0.25f, 0.5f, 1}));
+  EXPECT_EQ(look(MipMap(image, {}), points, {}), (std::vector<float>{0.9375f, 1, 2, 0.25f}));  // t = 0 is below
+}
+
+TEST(MipMap, wrap_modes_by_hand) {
+  // One row 1, 3. At s = 0 the two nearest texels are the first and the one before it: repeat 3 -> 2, clamp 1 -> 1,
+  // black 0 -> 0.5.
+  Image image = picture(2, 1, 1);
+  image.pixels = {1, 3};
+  const float s[] = {0}, t[] = {0.5f};
+  const float expected[] = {2, 0.5f, 1};
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(look(MipMap(image, {.wrap = kWraps[i]}), {1, s, t}, {})[0], expected[i]);
+}
+
+TEST(MipMap, filters_follow_the_formulas) {
+  const Points points(2000);
+  for (const auto& [width, height] : {std::pair{32, 32}, {64, 8}, {4, 32}, {1, 16}, {1, 1}})
+    for (const WrapMode wrap : kWraps) {
+      const Image image = picture(width, height, 1);
+      const MipMap map(image, {.wrap = wrap, .flip = false});
+      const Reference reference(image, wrap);
+      for (const float anisotropy : {8.0f, 2.0f}) {
+        const auto ewa = look(map, points.view(), {false, anisotropy});
+        const auto trilinear = look(map, points.view(), {true, anisotropy});
+        // A texel on the ellipse's edge or between two table entries may fall either way in float and in
+        // double: that is worth up to one entry's step, so a few points may differ by more.
+        int off = 0;
+        for (size_t i = 0; i < points.s.size(); ++i) {
+          const float s = points.s[i], t = points.t[i];
+          off += std::abs(ewa[i] - reference.ewa(s, t, points.dsdx[i], points.dtdx[i], points.dsdy[i], points.dtdy[i],
+                                                 anisotropy)) > 2e-3;
+          const float widest = std::max(
+              {std::abs(points.dsdx[i]), std::abs(points.dtdx[i]), std::abs(points.dsdy[i]), std::abs(points.dtdy[i])});
+          ASSERT_NEAR(trilinear[i], reference.trilinear(s, t, 2 * widest), 2e-5) << width << " " << i;
+        }
+        EXPECT_LE(off, 10) << width << "x" << height << " wrap " << int(wrap);
+      }
+    }
+}
+
+TEST(MipMap, lookup_width_is_trilinear) {
+  const Image image = picture(16, 16, 1);
+  const MipMap map(image, {.flip = false});
+  const Reference reference(image, WrapMode::Repeat);
+  const float s[] = {0.3f, 0.7f, 0.1f, 0.9f}, t[] = {0.2f, 0.6f, 0.5f, 0.1f}, width[] = {0, 0.1f, 0.5f, 2};
+  float out[4];
+  float* const channels[] = {out};
+  map.lookup_width(4, s, t, width, channels);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(out[i], reference.trilinear(s[i], t[i], width[i]), 1e-5) << i;
+}
+
+TEST(MipMap, a_batch_of_n_is_n_batches_of_one) {
+  const Points points(500);
+  for (const SampleFormat format : {SampleFormat::UInt8, SampleFormat::Half, SampleFormat::Float})
+    for (const bool trilinear : {false, true}) {
+      const MipMap map(picture(32, 16, 3, format), {.gamma = true});
+      const auto all = look(map, points.view(), {trilinear, 8});
+      for (size_t i = 0; i < all.size(); ++i) ASSERT_EQ(look(map, points.view(i, 1), {trilinear, 8})[0], all[i]) << i;
+    }
+}
+
+TEST(MipMap, compact_storage_stays_within_a_thousandth) {
+  const Points points(3000);
+  for (const auto& [width, height] : {std::pair{32, 32}, {30, 20}})
+    for (const bool single : {false, true}) {
+      const Image bytes = picture(width, height, 3, SampleFormat::UInt8);
+      Image floats = bytes;
+      floats.format = SampleFormat::Float;
+      const MipMapOptions options{.single = single, .gamma = true, .scale = 2.5f};
+      const MipMap small(bytes, options), large(floats, options);
+      EXPECT_LT(small.bytes(), large.bytes());
+      const auto a = look(small, points.view(), {}), b = look(large, points.view(), {});
+      for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-3f * b[i]) << i;
+      // Bilinear at level 0 is exact where the bytes are kept.
+      if (width == 32 && !single) {
+        const LookupPoints fine{100, points.s.data(), points.t.data()};
+        EXPECT_EQ(look(small, fine, {}), look(large, fine, {}));
+      }
+    }
+}
+
+TEST(MipMap, a_scale_cannot_overflow_halves) {
+  const MipMap map(picture(4, 4, 1, SampleFormat::UInt8), {.scale = 1e9f});
+  const float s[] = {0.5f}, t[] = {0.5f}, d[] = {4.0f}, zero[] = {0};
+  const float v = look(map, {1, s, t, d, zero, zero, d}, {})[0];
+  EXPECT_GT(v, 1e8f);
+  EXPECT_LT(v, 1e9f);
+}
+
+TEST(MipMap, a_constant_texture_is_constant_under_any_footprint) {
+  Image image = picture(16, 4, 1);
+  std::fill(image.pixels.begin(), image.pixels.end(), 0.75f);
+  const Points points(1000);
+  for (const WrapMode wrap : {WrapMode::Repeat, WrapMode::Clamp})
+    for (const bool trilinear : {false, true})
+      for (float v : look(MipMap(image, {.wrap = wrap}), points.view(), {trilinear, 8})) ASSERT_NEAR(v, 0.75f, 1e-6f);
+}
+
+TEST(MipMap, extreme_footprints_give_finite_values) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const Image image = picture(32, 16, 1);
+  const float values[] = {0, 1e-40f, 1e-25f, -1e-6f, 0.01f, 3, 1e10f, 1e20f, -3e38f, inf, nan};
+  for (const WrapMode wrap : kWraps) {
+    const MipMap map(image, {.wrap = wrap});
+    for (const MipFilter filter :
+         {MipFilter{false, 8}, MipFilter{true, 8}, MipFilter{false, 1e9f}, MipFilter{false, 0}})
+      for (float place : {0.5f, -7.3f, 1e6f, -1e15f, 3e38f})
+        for (float a : values)
+          for (float b : values)
+            for (float c : {0.0f, 1e-3f, 1e12f, nan}) {
+              const float v = look(map, {1, &place, &place, &a, &b, &c, &a}, filter)[0];
+              ASSERT_TRUE(v >= 0 && v <= 1) << place << " " << a << " " << b << " " << c << ": " << v;
+            }
+  }
+}
+
+TEST(MipMap, points_that_are_not_finite_give_nan) {
+  const MipMap map(picture(4, 4, 3), {});
+  const float s[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 0.5f};
+  const float t[] = {0.5f, 0.5f, 0.5f};
+  const auto v = look(map, {3, s, t}, {});
+  EXPECT_TRUE(std::isnan(v[0]));
+  EXPECT_TRUE(std::isnan(v[1]));
+  EXPECT_FALSE(std::isnan(v[2]));
+}
+
+TEST(MipMap, an_infinite_footprint_is_the_mean) {
+  const Image image = picture(8, 8, 1);
+  double mean = 0;
+  for (float v : image.pixels) mean += v / 64;
+  const float s[] = {0.1f}, d[] = {std::numeric_limits<float>::infinity()};
+  EXPECT_NEAR(look(MipMap(image, {}), {1, s, s, d, d, d, d}, {})[0], mean, 1e-6);
+}
+
+TEST(MipMap, a_repeating_texture_far_out_is_the_same) {
+  // Multiples of 2^-6 stay exact in 4096 + x, so the reduced point is the same to the bit.
+  const MipMap map(picture(16, 16, 1), {});
+  const float near[] = {0.328125f}, far[] = {4096.328125f};
+  EXPECT_EQ(look(map, {1, near, near}, {}), look(map, {1, far, far}, {}));
+}
+
+}  // namespace
+}  // namespace whit

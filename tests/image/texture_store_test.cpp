@@ -1,0 +1,152 @@
+// The store: one decode for many threads, sharing, eviction under a cap, errors kept and reported.
+#include "core/image/texture_store.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "core/image/write.h"
+
+namespace whit {
+namespace {
+
+// A float picture of one value, side x side.
+std::string constant_file(const std::string& name, int side, float value) {
+  const std::string path = fmt::format("{}/whit_store_{}.pfm", testing::TempDir(), name);
+  const std::vector<float> rgb(static_cast<size_t>(side) * side * 3, value);
+  OutputImage image;
+  image.width = image.height = side;
+  image.rgb = rgb;
+  EXPECT_EQ(write_image(path, image).error, "");
+  return path;
+}
+
+TextureSpec spec_of(const std::string& path, TextureKind kind = TextureKind::Rgb) {
+  TextureSpec spec;
+  spec.path = path;
+  spec.kind = kind;
+  return spec;
+}
+
+float look(const ImageTexture* texture) {
+  const float s = 0.5f, t = 0.5f;
+  float r = -1, g = -2, b = -3;
+  texture->lookup(1, &s, &t, nullptr, nullptr, nullptr, nullptr, &r, &g, &b);
+  EXPECT_EQ(r, g);
+  EXPECT_EQ(r, b);
+  return r;
+}
+
+TEST(TextureStore, equal_specs_are_one_texture_and_nothing_is_read_before_it_is_used) {
+  TextureStore store;
+  TextureSpec spec = spec_of("/nowhere/yet.png");
+  const ImageTexture* a = store.add(spec);
+  EXPECT_EQ(a, store.add(spec));
+  spec.scale = 2;
+  EXPECT_NE(a, store.add(spec));
+  EXPECT_TRUE(store.errors().empty());
+  EXPECT_EQ(store.statistics().decodes, 0);
+}
+
+TEST(TextureStore, textures_that_differ_in_the_filter_share_the_pyramid) {
+  TextureStore store;
+  TextureSpec spec = spec_of(constant_file("share", 4, 0.5f));
+  const ImageTexture* ewa = store.add(spec);
+  spec.trilinear = true;
+  const ImageTexture* trilinear = store.add(spec);
+  EXPECT_NE(ewa, trilinear);
+  EXPECT_EQ(look(ewa), 0.5f);
+  EXPECT_EQ(look(trilinear), 0.5f);
+  EXPECT_EQ(store.statistics().decodes, 1);
+  EXPECT_EQ(store.statistics().lookups, 2);
+  EXPECT_EQ(ewa->pyramid(), trilinear->pyramid());
+}
+
+TEST(TextureStore, float_lookups) {
+  // Luminance of (v, v, v): the weights sum to 1. A Float texture holds one channel, an RGB one three.
+  TextureStore store;
+  const std::string path = constant_file("float", 2, 0.25f);
+  const float st[300] = {};
+  for (const TextureKind kind : {TextureKind::Float, TextureKind::Rgb}) {
+    const ImageTexture* texture = store.add(spec_of(path, kind));
+    EXPECT_EQ(texture->pyramid()->channels(), kind == TextureKind::Float ? 1 : 3);
+    std::vector<float> out(300, -1);
+    texture->lookup_float(300, st, st, nullptr, nullptr, nullptr, nullptr, out.data());
+    for (float v : out) ASSERT_NEAR(v, 0.25f, 1e-6f);
+    EXPECT_NEAR(look(texture), 0.25f, 1e-6f);
+  }
+}
+
+TEST(TextureStore, many_threads_decode_once) {
+  TextureStore store;
+  const ImageTexture* texture = store.add(spec_of(constant_file("once", 300, 0.5f)));
+  std::atomic<int> good{0};
+  tbb::parallel_for(0, 400, [&](int) { good += std::abs(look(texture) - 0.5f) < 1e-5f; });
+  EXPECT_EQ(good, 400);
+  EXPECT_EQ(store.statistics().decodes, 1);
+}
+
+TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
+  // A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 = 16380 bytes; two fit in 40000, three do not.
+  TextureStore store;
+  store.set_memory_limit(40000);
+  const ImageTexture* a = store.add(spec_of(constant_file("a", 32, 1)));
+  const ImageTexture* b = store.add(spec_of(constant_file("b", 32, 2)));
+  const ImageTexture* c = store.add(spec_of(constant_file("c", 32, 3)));
+  EXPECT_EQ(look(a), 1);
+  EXPECT_EQ(look(b), 2);
+  EXPECT_EQ(look(a), 1);  // a is now younger than b
+  EXPECT_EQ(look(c), 3);  // b goes
+  TextureStatistics s = store.statistics();
+  EXPECT_EQ(s.decodes, 3);
+  EXPECT_EQ(s.evictions, 1);
+  EXPECT_EQ(s.resident_bytes, 2u * 16380);
+  EXPECT_EQ(s.peak_bytes, 3u * 16380);
+  EXPECT_EQ(look(a), 1);
+  EXPECT_EQ(store.statistics().decodes, 3);  // still there
+  EXPECT_EQ(look(b), 2);
+  EXPECT_EQ(store.statistics().decodes, 4);  // decoded again
+}
+
+TEST(TextureStore, a_pyramid_in_use_survives_eviction) {
+  TextureStore store;
+  store.set_memory_limit(1);
+  const ImageTexture* a = store.add(spec_of(constant_file("use1", 8, 1)));
+  const auto held = a->pyramid();
+  EXPECT_EQ(look(store.add(spec_of(constant_file("use2", 8, 2)))), 2);
+  EXPECT_EQ(store.statistics().evictions, 1);
+  EXPECT_EQ(held->width(), 8);
+  EXPECT_NE(a->pyramid(), held);
+}
+
+TEST(TextureStore, eviction_under_threads_changes_no_value) {
+  TextureStore store;
+  store.set_memory_limit(20000);
+  std::vector<const ImageTexture*> textures;
+  for (int i = 0; i < 6; ++i)
+    textures.push_back(store.add(spec_of(constant_file(std::string(1, char('k' + i)), 32, float(i)))));
+  std::atomic<int> wrong{0};
+  tbb::parallel_for(0, 600, [&](int i) { wrong += look(textures[size_t(i * 7 % 6)]) != float(i * 7 % 6); });
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(store.statistics().evictions, 0);
+}
+
+TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {
+  TextureStore store;
+  const std::string path = constant_file("cut", 64, 1);
+  std::filesystem::resize_file(path, 500);
+  const ImageTexture* texture = store.add(spec_of(path));
+  EXPECT_EQ(look(texture), 0);
+  EXPECT_EQ(look(texture), 0);
+  EXPECT_EQ(texture->pyramid(), nullptr);
+  const auto errors = store.errors();
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors[0].find(path), std::string::npos);
+  EXPECT_EQ(store.statistics().decodes, 0);
+}
+
+}  // namespace
+}  // namespace whit

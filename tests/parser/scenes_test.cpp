@@ -1,0 +1,216 @@
+// What statements mean: options, scopes of names and state, objects, includes.
+#include <filesystem>
+#include <fstream>
+
+#include "tests/parser/parser_test_support.h"
+
+namespace whit {
+namespace {
+
+TEST(Scenes, OptionsArePluginsWithParameters) {
+  const Parsed parsed(
+      "Film \"image\" \"integer xresolution\" 32\nSampler \"halton\"\nIntegrator \"whitted\"\nFilter \"box\"\n"
+      "PixelFilter \"gaussian\"\nAccelerator \"bvh\"\nCamera \"perspective\" \"float fov\" 40\nWorldBegin\nWorldEnd\n");
+  expect_clean(parsed);
+  const SceneDescription& scene = parsed.scene();
+  EXPECT_EQ(scene.film.plugin, "image");
+  EXPECT_EQ(scene.film.params.at(0).integers(), (std::vector<int32_t>{32}));
+  EXPECT_EQ(scene.sampler.plugin, "halton");
+  EXPECT_EQ(scene.integrator.plugin, "whitted");
+  EXPECT_EQ(scene.filter.plugin, "gaussian");  // The later of two wins, and Filter is the same as PixelFilter.
+  EXPECT_EQ(scene.accelerator.plugin, "bvh");
+  EXPECT_EQ(scene.camera.plugin, "perspective");
+  EXPECT_EQ(parsed.sources.location(scene.camera.where), "test.pbrt:7:1");
+  EXPECT_EQ(parsed.sources.location(scene.camera.plugin_at), "test.pbrt:7:8");
+  EXPECT_EQ(parsed.sources.location(scene.world_begin), "test.pbrt:8:1");
+  EXPECT_EQ(scene.folder, "/nowhere");
+  EXPECT_EQ(Parsed("WorldBegin WorldEnd").scene().film.plugin, "");
+}
+
+TEST(Scenes, SeveralWorldsShareOptionsAndNothingElse) {
+  const Parsed parsed(
+      "Sampler \"halton\"\nWorldBegin\nMaterial \"mirror\" Translate 1 0 0 ReverseOrientation\n"
+      "Texture \"t\" \"float\" \"constant\" MakeNamedMaterial \"m\" \"string type\" \"glass\"\nObjectBegin \"o\" "
+      "ObjectEnd\n"
+      "WorldEnd\nFilm \"image\"\nWorldBegin\nShape \"s\" \"texture alpha\" \"t\"\nNamedMaterial \"m\" ObjectInstance "
+      "\"o\"\n"
+      "WorldEnd\n");
+  ASSERT_EQ(parsed.result.scenes.size(), 2u);
+  EXPECT_EQ(parsed.result.scenes[0].film.plugin, "");
+  const SceneDescription& second = parsed.result.scenes[1];
+  EXPECT_EQ(second.sampler.plugin, "halton");
+  EXPECT_EQ(second.film.plugin, "image");
+  EXPECT_EQ(second.shapes.at(0).transform, 0);
+  EXPECT_EQ(second.shapes.at(0).material, 0);
+  EXPECT_FALSE(second.shapes.at(0).reverse_orientation);
+  EXPECT_EQ(second.materials.size(), 1u);
+  EXPECT_EQ(parsed.all().size(), 3u) << parsed.messages();  // t, m and o are not known any more.
+}
+
+TEST(Scenes, MaterialsAndAreaLightsFollowAttributeBlocksOnly) {
+  const Parsed parsed(in_world(
+      "Shape \"s\"\nMaterial \"glass\"\nAttributeBegin Material \"mirror\" AreaLightSource \"diffuse\" Shape \"s\" "
+      "AttributeEnd\nShape \"s\"\nTransformBegin Material \"metal\" Translate 1 0 0 TransformEnd Shape \"s\"\n"
+      "AreaLightSource \"diffuse\" AreaLightSource \"\" Shape \"s\""));
+  expect_clean(parsed);
+  const SceneDescription& scene = parsed.scene();
+  const auto plugin = [&](size_t i) {
+    return scene.materials.at(static_cast<size_t>(scene.shapes.at(i).material)).plugin;
+  };
+  EXPECT_EQ(plugin(0), "matte");  // pbrt's default.
+  EXPECT_EQ(plugin(1), "mirror");
+  EXPECT_EQ(scene.shapes[1].area_light, 0);
+  EXPECT_EQ(plugin(2), "glass");
+  EXPECT_EQ(scene.shapes[2].area_light, -1);
+  EXPECT_EQ(plugin(3), "metal");  // TransformEnd does not restore it.
+  EXPECT_EQ(scene.shapes[3].transform, 0);
+  EXPECT_EQ(scene.shapes[4].area_light, -1);
+}
+
+TEST(Scenes, ReverseOrientationToggles) {
+  const Parsed parsed(in_world(
+      "ReverseOrientation Shape \"s\" AttributeBegin ReverseOrientation Shape \"s\" AttributeEnd Shape \"s\""));
+  EXPECT_TRUE(parsed.scene().shapes[0].reverse_orientation);
+  EXPECT_FALSE(parsed.scene().shapes[1].reverse_orientation);
+  EXPECT_TRUE(parsed.scene().shapes[2].reverse_orientation);
+}
+
+TEST(Scenes, TexturesHaveTwoNameSpacesAndScopes) {
+  const Parsed parsed(
+      in_world("Texture \"t\" \"float\" \"constant\"\nTexture \"t\" \"color\" \"checkerboard\"\nShape \"s\" \"texture "
+               "a\" \"t\"\n"
+               "AttributeBegin Texture \"t\" \"float\" \"fbm\" Shape \"s\" \"texture a\" \"t\" AttributeEnd\n"
+               "Shape \"s\" \"texture a\" \"t\""));
+  expect_clean(parsed);
+  const auto ref = [&](size_t i) { return parsed.scene().shapes.at(i).params.at(0).textures().at(0); };
+  EXPECT_EQ(ref(0).float_texture, 0);
+  EXPECT_EQ(ref(0).spectrum_texture, 1);
+  EXPECT_EQ(ref(1).float_texture, 2);
+  EXPECT_EQ(ref(1).spectrum_texture, 1);
+  EXPECT_EQ(ref(2).float_texture, 0);
+  EXPECT_TRUE(parsed.scene().textures[1].spectrum);
+  EXPECT_EQ(parsed.scene().textures[1].plugin, "checkerboard");
+}
+
+TEST(Scenes, RedefinedTextureDoesNotChangeEarlierMaterials) {
+  const Parsed parsed(
+      in_world("Texture \"t\" \"spectrum\" \"constant\" Material \"matte\" \"texture Kd\" \"t\" Texture \"t\" "
+               "\"spectrum\" \"fbm\" "
+               "Material \"matte\" \"texture Kd\" \"t\""));
+  EXPECT_EQ(parsed.scene().materials[1].params[0].textures()[0].spectrum_texture, 0);
+  EXPECT_EQ(parsed.scene().materials[2].params[0].textures()[0].spectrum_texture, 1);
+}
+
+TEST(Scenes, NamedMaterials) {
+  const Parsed parsed(in_world(
+      "MakeNamedMaterial \"a\" \"string type\" \"glass\" \"float index\" 1.3\nMakeNamedMaterial \"b\" \"string type\" "
+      "\"mirror\"\nMaterial \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"string x\" "
+      "\"c\"\n"
+      "NamedMaterial \"b\" Shape \"s\""));
+  expect_clean(parsed);
+  const SceneDescription& scene = parsed.scene();
+  EXPECT_EQ(scene.materials[1].plugin, "glass");
+  EXPECT_EQ(scene.materials[1].name, "a");
+  EXPECT_EQ(parsed.sources.location(scene.materials[1].plugin_at), "test.pbrt:2:37");
+  ASSERT_EQ(scene.materials[1].params.size(), 1u);  // The type became the plugin.
+  EXPECT_EQ(scene.materials[1].params[0].name, "index");
+  const std::vector<std::pair<std::string, int>> named = {{"a", 1}, {"b", 2}};
+  EXPECT_EQ(scene.materials[3].named, named);
+  EXPECT_EQ(scene.shapes[0].material, 2);
+}
+
+TEST(Scenes, Objects) {
+  const Parsed parsed(
+      in_world("ObjectBegin \"o\" Translate 1 0 0 Material \"glass\" Shape \"s\" ObjectEnd\nShape \"s\"\n"
+               "Translate 0 2 0 ObjectInstance \"o\"\nObjectBegin \"o\" ObjectEnd ObjectInstance \"o\""));
+  expect_clean(parsed);
+  const SceneDescription& scene = parsed.scene();
+  EXPECT_EQ(scene.shapes[0].object, 0);
+  EXPECT_EQ(scene.shapes[1].object, -1);
+  EXPECT_EQ(scene.shapes[1].transform, 0);  // ObjectEnd restores like AttributeEnd.
+  EXPECT_EQ(scene.shapes[1].material, 0);
+  EXPECT_EQ(scene.instances[0].object, 0);
+  EXPECT_EQ(transform_point(scene.transforms.at(static_cast<size_t>(scene.instances[0].transform)).start, {0, 0, 0}),
+            Vec3d(0, 2, 0));
+  EXPECT_EQ(scene.instances[1].object, 1);  // The name means the later object from then on.
+}
+
+TEST(Scenes, Media) {
+  const Parsed parsed(
+      "MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nWorldBegin\nMediumInterface \"fog\" \"\"\n"
+      "MediumInterface \"fog\"\nWorldEnd\n");
+  expect_clean(parsed);
+  EXPECT_EQ(parsed.scene().media.at(0).plugin, "homogeneous");
+  EXPECT_EQ(parsed.scene().media_uses.size(), 2u);
+}
+
+TEST(Scenes, AreaLightInsideAnObject) {
+  const Parsed parsed(in_world("ObjectBegin \"o\" AreaLightSource \"diffuse\"\nShape \"s\" Shape \"s\"\nObjectEnd"));
+  expect_only(parsed, Severity::Warning, 3, 1, "area light inside an object", "lights nothing");
+}
+
+class Files : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              (std::string("whit_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::create_directories(folder_ / "sub");
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::filesystem::path folder_;
+  Sources sources_;
+};
+
+TEST_F(Files, IncludesAreRelativeToTheMainFileAndShareItsState) {
+  const std::string main =
+      write("main.pbrt", in_world("Include \"sub/a.pbrt\"\nShape \"s\" AttributeEnd\nInclude \"sub/b.pbrt\""));
+  // Found beside the main file, although a.pbrt is in sub.
+  write("sub/a.pbrt", "Include \"sub/b.pbrt\"\nAttributeBegin Material \"glass\"");
+  write("sub/b.pbrt", "Translate 1 0 0\n");
+  const ParseResult result = parse_file(sources_, main);
+  ASSERT_TRUE(result.diagnostics.all().empty());
+  EXPECT_EQ(result.scenes.at(0).shapes.at(0).material, 1);
+  EXPECT_EQ(transform_point(result.scenes[0].transforms.at(1).start, {0, 0, 0}), Vec3d(1, 0, 0));
+  EXPECT_EQ(result.scenes[0].folder, std::filesystem::absolute(folder_).lexically_normal().string());
+  EXPECT_EQ(sources_.size(), 3u);  // b.pbrt is open once.
+  EXPECT_GT(result.bytes, sources_.text(0).size());
+}
+
+TEST_F(Files, UnclosedBlockFromAnInclude) {
+  const std::string main = write("main.pbrt", in_world("Include \"a.pbrt\""));
+  write("a.pbrt", "\nAttributeBegin");
+  const ParseResult result = parse_file(sources_, main);
+  ASSERT_EQ(result.diagnostics.all().size(), 1u);
+  EXPECT_EQ(sources_.location(result.diagnostics.all()[0].where), (folder_ / "a.pbrt").string() + ":2:1");
+}
+
+TEST_F(Files, IncludeMistakes) {
+  const std::string main = write("main.pbrt", in_world("Include \"none.pbrt\"\nInclude \"a.pbrt\"\nInclude \"bin\""));
+  write("a.pbrt", "Include \"b.pbrt\"\nInclude \"a.pbrt\"");
+  write("b.pbrt", "Include \"main.pbrt\"");
+  write("bin", std::string("\0\0", 2));
+  const std::vector<Diagnostic> all = parse_file(sources_, main).diagnostics.all();
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0].error_class, ErrorClass::File);
+  EXPECT_NE(all[0].message.find("No such file"), std::string::npos);
+  EXPECT_EQ(sources_.place(all[0].where).line, 2u);
+  EXPECT_NE(all[1].message.find("includes itself"), std::string::npos);  // By way of a.pbrt and b.pbrt.
+  EXPECT_EQ(sources_.name(all[1].where.file), (folder_ / "b.pbrt").string());
+  EXPECT_NE(all[2].message.find("includes itself"), std::string::npos);  // a.pbrt, directly.
+  EXPECT_EQ(sources_.place(all[2].where).line, 2u);
+  EXPECT_NE(all[3].message.find("not a scene file"), std::string::npos);
+}
+
+TEST_F(Files, MissingMainFile) {
+  const ParseResult result = parse_file(sources_, (folder_ / "no.pbrt").string());
+  ASSERT_EQ(result.diagnostics.all().size(), 1u);
+  EXPECT_EQ(result.diagnostics.all()[0].error_class, ErrorClass::File);
+  EXPECT_FALSE(result.diagnostics.all()[0].where.known());
+}
+
+}  // namespace
+}  // namespace whit

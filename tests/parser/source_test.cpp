@@ -1,0 +1,131 @@
+#include "parser/source.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace whit {
+namespace {
+
+TEST(Sources, PlaceCountsFromOneAndInCodePoints) {
+  Sources sources;
+  const uint32_t file = sources.add_text("a.pbrt", "one\nt\xc3\xa4!\n");
+  EXPECT_EQ(sources.place({file, 0}).line, 1u);
+  EXPECT_EQ(sources.place({file, 0}).column, 1u);
+  // The '!' is the fourth byte of its line, but the third character.
+  EXPECT_EQ(sources.place({file, 7}).line, 2u);
+  EXPECT_EQ(sources.place({file, 7}).column, 3u);
+  // Behind the end: the end.
+  EXPECT_EQ(sources.location({file, 1000}), "a.pbrt:3:1");
+  EXPECT_EQ(sources.location({}), "");
+}
+
+TEST(Sources, PlaceInAFileLongerThanABlock) {
+  // Lines are counted in blocks of 1 MiB; 3 MB of lines of ten bytes cross several.
+  std::string text;
+  for (int i = 0; i < 300000; ++i) text += "123456789\n";
+  Sources sources;
+  const uint32_t file = sources.add_text("long", std::move(text));
+  EXPECT_EQ(sources.place({file, 2999995}).line, 300000u);
+  EXPECT_EQ(sources.place({file, 2999995}).column, 6u);
+  EXPECT_EQ(sources.place({file, 25}).line, 3u);
+}
+
+TEST(Sources, OpensFilesOnce) {
+  const std::string path = testing::TempDir() + "/whit_source_test.txt";
+  std::ofstream(path) << "hello\n";
+  Sources sources;
+  std::string problem;
+  const auto file = sources.open(path, problem);
+  ASSERT_TRUE(file.has_value()) << problem;
+  EXPECT_EQ(sources.text(*file), "hello\n");
+  EXPECT_EQ(sources.name(*file), path);
+  EXPECT_EQ(sources.open(path, problem), file);
+  EXPECT_EQ(sources.size(), 1u);
+  std::filesystem::remove(path);
+}
+
+TEST(Sources, EmptyFileMissingFileAndFolder) {
+  const std::string path = testing::TempDir() + "/whit_source_empty.txt";
+  std::ofstream(path).close();
+  Sources sources;
+  std::string problem;
+  const auto file = sources.open(path, problem);
+  ASSERT_TRUE(file.has_value()) << problem;
+  EXPECT_EQ(sources.text(*file), "");
+  std::filesystem::remove(path);
+  EXPECT_FALSE(sources.open(path, problem).has_value());
+  EXPECT_EQ(problem, "No such file or directory");
+  EXPECT_FALSE(sources.open(testing::TempDir(), problem).has_value());
+  EXPECT_EQ(problem, "Is a directory");
+  // A device may have no end.
+  EXPECT_FALSE(sources.open("/dev/zero", problem).has_value());
+  EXPECT_EQ(problem, "Not a regular file");
+}
+
+TEST(RenderDiagnostic, PlaceLineCaretAndRemedy) {
+  Sources sources;
+  const uint32_t file = sources.add_text("scene.pbrt", "\nShape \"sphere\" \"float raduis\" [1]\n");
+  const Diagnostic d{
+      Severity::Error, ErrorClass::Scene, {file, 16}, "sphere has no parameter \"raduis\"", "did you mean \"radius\"?"};
+  EXPECT_EQ(sources.render_diagnostic(d, false),
+            "scene.pbrt:2:16: error: sphere has no parameter \"raduis\"\n"
+            "    Shape \"sphere\" \"float raduis\" [1]\n"
+            "                   ^\n"
+            "  did you mean \"radius\"?\n");
+  EXPECT_NE(sources.render_diagnostic(d, true).find("\033[1;31merror:\033[0m"), std::string::npos);
+}
+
+TEST(RenderDiagnostic, WithoutAPlace) {
+  const Diagnostic d{Severity::Warning, ErrorClass::Scene, {}, "odd", ""};
+  EXPECT_EQ(Sources().render_diagnostic(d, false), "warning: odd\n");
+}
+
+TEST(RenderDiagnostic, TabsAndBinaryBytesKeepTheCaretInPlace) {
+  Sources sources;
+  const uint32_t file = sources.add_text("t", "\t\x01\xff\xc3\xa4x");
+  const Diagnostic d{Severity::Error, ErrorClass::Scene, {file, 5}, "m", ""};
+  // A tab is four columns, \x01 and \xff are four each, the umlaut is one: the caret is in column 13.
+  EXPECT_EQ(sources.render_diagnostic(d, false), "t:1:5: error: m\n        \\x01\\xff\xc3\xa4x\n                 ^\n");
+}
+
+TEST(RenderDiagnostic, LongLinesAreWindowed) {
+  Sources sources;
+  const std::string text = std::string(5000, 'a') + "!" + std::string(5000, 'b') + "\n";
+  const uint32_t file = sources.add_text("t", text);
+  const Diagnostic d{Severity::Error, ErrorClass::Scene, {file, 5000}, "m", ""};
+  EXPECT_EQ(sources.render_diagnostic(d, false), "t:1:5001: error: m\n    ... " + std::string(50, 'a') + "!" +
+                                                     std::string(49, 'b') + " ...\n        " + std::string(50, ' ') +
+                                                     "^\n");
+  const Diagnostic first{Severity::Error, ErrorClass::Scene, {file, 0}, "m", ""};
+  EXPECT_EQ(sources.render_diagnostic(first, false), "t:1:1: error: m\n    " + std::string(100, 'a') + " ...\n    ^\n");
+}
+
+TEST(WhyNotText, KnowsWhatIsNoScene) {
+  EXPECT_EQ(why_not_text("WorldBegin # \xc3\xa4\n"), "");
+  EXPECT_EQ(why_not_text("# Latin-1: caf\xe9, na\xefve\nWorldBegin\n"), "");
+  EXPECT_EQ(why_not_text(std::string_view("ab\0c", 4)), "it holds binary data");
+  EXPECT_EQ(why_not_text("\x01\x02\x03\x04"), "it holds binary data");
+  EXPECT_EQ(why_not_text("\x1f\x8b\x08"), "it is compressed with gzip");
+  EXPECT_EQ(why_not_text("\xff\xfeW"), "it is UTF-16 text, not UTF-8");
+}
+
+TEST(InQuotes, EscapesAndCuts) {
+  EXPECT_EQ(in_quotes("a\x07"), "\"a\\x07\"");
+  EXPECT_EQ(in_quotes(std::string(100, 'x')), "\"" + std::string(60, 'x') + "...\"");
+}
+
+TEST(DidYouMean, FindsSlips) {
+  const std::vector<std::string> names = {"radius", "zmin", "zmax", "phimax", "Kd"};
+  EXPECT_EQ(did_you_mean("raduis", names), "did you mean \"radius\"?");
+  EXPECT_EQ(nearest_name("Radius", names), "radius");
+  EXPECT_EQ(nearest_name("kd", names), "Kd");
+  EXPECT_EQ(nearest_name("Ks", names), "");
+  EXPECT_EQ(nearest_name("banana", names), "");
+  EXPECT_EQ(nearest_name(std::string(100000, 'x'), names), "");
+}
+
+}  // namespace
+}  // namespace whit

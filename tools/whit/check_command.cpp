@@ -1,0 +1,27 @@
+// `whit check`: every problem a scene's text has, without reading its meshes and textures or rendering.
+
+#include "tools/whit/command_line.h"
+#include "tools/whit/load.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+
+int check_command(const Arguments& args) {
+  std::vector<std::string> scenes;
+  CLI::App app("Reports every problem of a scene without rendering. Exit code 1 when there is any.", "whit check");
+  app.add_option("scenes", scenes, "Scene files; standard input without any");
+  int code = kDone;
+  if (!parse_arguments(app, args, code)) return code;
+  if (scenes.empty()) scenes.push_back("-");
+  for (const std::string& path : scenes) {
+    Sources sources;
+    LoadedFile file = load_file(sources, path);
+    Diagnostics all = file.parsed.diagnostics;
+    for (const SceneDescription& world : file.parsed.scenes) plan_scene(world, sources, all);
+    print_diagnostics(sources, all);
+    if (!all.all().empty()) code = kNo;
+  }
+  return code;
+}
+
+}  // namespace whit

@@ -1,0 +1,47 @@
+#include "tools/whit/load.h"
+
+#include <chrono>
+#include <iostream>
+#include <iterator>
+
+#include "parser/lexer.h"
+
+namespace whit {
+namespace {
+
+double since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+LoadedFile load_text(Sources& sources, const std::string& name, std::string text) {
+  const auto start = std::chrono::steady_clock::now();
+  LoadedFile out;
+  out.parsed = parse_text(sources, name, std::move(text), "");
+  out.parse_seconds = since(start);
+  return out;
+}
+
+LoadedFile load_file(Sources& sources, const std::string& path) {
+  if (path.empty() || path == "-") {
+    return load_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}});
+  }
+  const auto start = std::chrono::steady_clock::now();
+  LoadedFile out;
+  out.parsed = parse_file(sources, path);
+  out.parse_seconds = since(start);
+  return out;
+}
+
+PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics) {
+  const auto start = std::chrono::steady_clock::now();
+  PlannedScene out;
+  const ValuePosition position = [&sources](const Parameter& p, size_t i) { return value_position(sources, p, i); };
+  out.bound = bind_scene(description, position, diagnostics);
+  out.plan = plan_effects(out.bound);
+  out.seconds = since(start);
+  return out;
+}
+
+}  // namespace whit

@@ -1,0 +1,27 @@
+// From a path to a planned scene: what render, check, explain and bench begin with.
+#pragma once
+
+#include <string>
+
+#include "core/scene/effect_plan.h"
+#include "parser/parse.h"
+
+namespace whit {
+
+/// A parsed file (or standard input when the path is "" or "-"), with the time it took.
+struct LoadedFile {
+  ParseResult parsed;
+  double parse_seconds = 0;
+};
+LoadedFile load_file(Sources& sources, const std::string& path);
+LoadedFile load_text(Sources& sources, const std::string& name, std::string text);
+
+/// One world of a file, bound and planned.
+struct PlannedScene {
+  BoundScene bound;
+  EffectPlan plan;
+  double seconds = 0;
+};
+PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics);
+
+}  // namespace whit

@@ -1,0 +1,55 @@
+// The command `whit`: dispatch, and nothing else. Start at render_command.cpp.
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <new>
+
+#include "tools/whit/commands.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+
+const std::vector<Command>& commands() {
+  static const std::vector<Command> table = {
+      {"render", render_command, "[render] SCENE... [flags]", "render scenes (the word may be left out)"},
+      {"check", check_command, "check SCENE...", "report every problem of a scene without rendering"},
+      {"fmt", fmt_command, "fmt SCENE [--in-place]", "write a scene file in normal form"},
+      {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
+      {"diff", diff_command, "diff OUT REFERENCE [--json]", "measure how far two pictures are apart"},
+      {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
+      {"help", help_command, "help [CATEGORY [PLUGIN]]", "list plugins and their parameters"},
+  };
+  return table;
+}
+
+namespace {
+
+int dispatch(const Arguments& args) {
+  if (!args.empty()) {
+    for (const Command& c : commands()) {
+      if (args[0] == c.name) return c.run({args.begin() + 1, args.end()});
+    }
+    if (args[0] == "--help" || args[0] == "-h") return help_command({});
+    if (args[0] == "--version") {
+      fmt::print("whit {}\n", WHIT_VERSION);
+      return kDone;
+    }
+  }
+  return render_command(args);
+}
+
+}  // namespace
+}  // namespace whit
+
+int main(int argc, char** argv) {
+  try {
+    return whit::dispatch({argv + 1, argv + argc});
+  } catch (const std::bad_alloc&) {
+    whit::say("whit: out of memory");
+    return whit::kLimit;
+  } catch (const std::exception& e) {
+    whit::say(fmt::format("whit: {}", e.what()));
+    return whit::kFileError;
+  }
+}

@@ -1,0 +1,111 @@
+#include "tools/whit/terminal.h"
+
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace whit {
+
+bool use_colour() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
+
+void say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
+
+void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings) {
+  const bool colour = use_colour();
+  int errors = 0, warnings = 0;
+  for (const Diagnostic& d : diagnostics.all()) {
+    const bool error = d.severity == Severity::Error;
+    (error ? errors : warnings) += 1;
+    if (error || !quiet_warnings) fmt::print(stderr, "{}", sources.render_diagnostic(d, colour));
+  }
+  if (errors + warnings < 2) return;
+  const auto counted = [](int n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+  say(counted(errors, "error") + ", " + counted(warnings, "warning"));
+}
+
+int exit_code(const Diagnostics& diagnostics) {
+  int code = 0;
+  for (const Diagnostic& d : diagnostics.all()) {
+    if (d.severity != Severity::Error) continue;
+    if (d.error_class == ErrorClass::Scene) return 3;
+    code = 4;
+  }
+  return code;
+}
+
+Diagnostics strict(const Diagnostics& diagnostics) {
+  Diagnostics out;
+  for (Diagnostic d : diagnostics.all()) {
+    d.severity = Severity::Error;
+    out.add(std::move(d));
+  }
+  return out;
+}
+
+Progress::Progress(std::string what)
+    : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
+
+Progress::~Progress() {
+  if (drawn_) fmt::print(stderr, "\r\033[K");
+}
+
+void Progress::update(double share) {
+  const auto now = Clock::now();
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  if (terminal_) {
+    if (std::chrono::duration<double>(now - last_).count() < 0.1) return;
+    last_ = now;
+    drawn_ = true;
+    draw(share, seconds);
+  } else if (seconds >= next_line_) {
+    next_line_ = seconds + 10;
+    say(fmt::format("{}: {:.0f} % after {}, {} left", what_, 100 * share, duration_text(seconds),
+                    duration_text(share > 0 ? seconds * (1 - share) / share : 0)));
+  }
+}
+
+void Progress::draw(double share, double seconds) const {
+  winsize size{};
+  const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  const std::string tail = fmt::format(" {:3.0f} %  {}  {} left", 100 * share, duration_text(seconds),
+                                       duration_text(share > 0.01 ? seconds * (1 - share) / share : 0));
+  const int width = std::max(4, columns - static_cast<int>(what_.size() + tail.size()) - 4);
+  const int filled = static_cast<int>(share * width);
+  fmt::print(stderr, "\r{} [{}{}]{}\033[K", what_, std::string(static_cast<size_t>(filled), '='),
+             std::string(static_cast<size_t>(width - filled), ' '), tail);
+  std::fflush(stderr);
+}
+
+std::string duration_text(double seconds) {
+  if (seconds < 0.0995) return fmt::format("{:.0f} ms", 1000 * seconds);
+  if (seconds < 99.95) return fmt::format("{:.1f} s", seconds);
+  const int s = static_cast<int>(seconds + 0.5);
+  if (s < 3600) return fmt::format("{} min {:02d} s", s / 60, s % 60);
+  return fmt::format("{} h {:02d} min", s / 3600, s / 60 % 60);
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1024.0 * 1024) return fmt::format("{:.0f} KiB", bytes / 1024);
+  if (bytes < 10 * 1024.0 * 1024 * 1024) return fmt::format("{:.0f} MiB", bytes / (1024 * 1024));
+  return fmt::format("{:.1f} GiB", bytes / (1024.0 * 1024 * 1024));
+}
+
+std::string count_text(double count) {
+  if (count < 1e4) return fmt::format("{:.0f}", count);
+  if (count < 1e6) return fmt::format("{:.1f} k", count / 1e3);
+  if (count < 1e9) return fmt::format("{:.2f} M", count / 1e6);
+  return fmt::format("{:.2f} G", count / 1e9);
+}
+
+double peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace whit

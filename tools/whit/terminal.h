@@ -1,0 +1,56 @@
+// What people see: messages on stderr, colour and a progress bar only where there is a terminal.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "core/base/diagnostics.h"
+#include "parser/source.h"
+
+namespace whit {
+
+/// True when stderr is a terminal and NO_COLOR is not set.
+bool use_colour();
+
+/// Prints a line to stderr.
+void say(const std::string& line);
+
+/// Prints diagnostics in file order with their places, and how many there were. `quiet_warnings` keeps errors only.
+void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings = false);
+
+/// The exit code that errors lead to: 3 when the scene is wrong, 4 when files could not be read, 0 without errors.
+int exit_code(const Diagnostics& diagnostics);
+
+/// Turns every warning into an error (--strict).
+Diagnostics strict(const Diagnostics& diagnostics);
+
+/// A bar with elapsed time and an estimate on a terminal, a line now and then in a log.
+class Progress {
+ public:
+  explicit Progress(std::string what);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  void update(double share);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(double share, double seconds) const;
+  std::string what_;
+  bool terminal_;
+  Clock::time_point start_, last_;
+  bool drawn_ = false;
+  double next_line_ = 10;  ///< Seconds after which a log gets its next line.
+};
+
+/// "12.3 s", "4 min 05 s".
+std::string duration_text(double seconds);
+/// "812 MiB".
+std::string bytes_text(double bytes);
+/// "13.5 M".
+std::string count_text(double count);
+
+/// The largest resident size of this process so far, in bytes.
+double peak_memory();
+
+}  // namespace whit
