@@ -238,6 +238,7 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
   RTCGeometry g = rtcNewGeometry(impl_->device, curves.ribbon ? RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE
                                                               : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE);
   const size_t points = 4 * curves.segment_count;
+  rtcSetGeometryTessellationRate(g, 16);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points, 0,
                              4 * sizeof(float), points);
   if (curves.ribbon) {

@@ -50,15 +50,16 @@ double build_cell_cdf(std::span<const double> weights, float* cdf) {
   return sum;
 }
 
-GridDistribution::GridDistribution(int columns, int rows, std::span<const double> weights)
+GridDistribution::GridDistribution(int columns, int rows,
+                                   const std::function<void(int row, std::span<double>)>& row_weights)
     : columns_(columns),
       rows_(rows),
       rows_cdf_(static_cast<size_t>(rows) + 1),
       columns_cdf_(static_cast<size_t>(rows) * (static_cast<size_t>(columns) + 1)) {
-  std::vector<double> row_sums(static_cast<size_t>(rows));
+  std::vector<double> weights(static_cast<size_t>(columns)), row_sums(static_cast<size_t>(rows));
   for (size_t r = 0; r < row_sums.size(); ++r) {
-    const auto n = static_cast<size_t>(columns);
-    row_sums[r] = build_cell_cdf(weights.subspan(r * n, n), columns_cdf_.data() + r * (n + 1));
+    row_weights(static_cast<int>(r), weights);
+    row_sums[r] = build_cell_cdf(weights, columns_cdf_.data() + r * (weights.size() + 1));
   }
   build_cell_cdf(row_sums, rows_cdf_.data());
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace whit {
 /// of the samplers' numbers, so the probability stated is exactly the share of the numbers that lead to a cell, and
 /// they add up to exactly 1. Every cell of positive weight has at least one such unit; cells of weight 0 have none.
 ///
-/// Writes the cumulative distribution, weights.size() + 1 values from 0 to 1. Weights must be finite and >= 0, and fewer
-/// than 2^23; if all are 0 every cell counts the same. Returns the sum of the weights.
+/// Writes the cumulative distribution, weights.size() + 1 values from 0 to 1. Weights must be finite and >= 0, and
+/// fewer than 2^23; if all are 0 every cell counts the same. Returns the sum of the weights.
 double build_cell_cdf(std::span<const double> weights, float* cdf);
 
 /// Cells of a grid of rows and columns with probabilities in proportion to weights: first a row is drawn, then a
@@ -20,8 +21,8 @@ double build_cell_cdf(std::span<const double> weights, float* cdf);
 class GridDistribution {
  public:
   GridDistribution() = default;
-  /// `weights` are row by row, >= 0 and finite.
-  GridDistribution(int columns, int rows, std::span<const double> weights);
+  /// `row_weights` fills in the weights of the cells of a row, >= 0 and finite.
+  GridDistribution(int columns, int rows, const std::function<void(int row, std::span<double>)>& row_weights);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }

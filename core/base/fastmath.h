@@ -1,9 +1,10 @@
 // Elementary functions and small vector helpers for loops over batches.
 //
-// Why not <cmath>: a vectorised loop and its scalar tail would call different routines, so a lane's bits would
-// depend on where in a batch it stands, and many libm calls do not vectorise at all. The functions here are
-// branch-free basic arithmetic. They take and return floats and work in double inside, so that plain polynomials
-// without compensation are right to 1 ulp; the polynomials are minimax fits (Remez) made for this file.
+// Why not <cmath>: a vectorised loop and its scalar tail would call different routines, so a lane's bits
+// would depend on where in a batch it stands, and many libm calls do not vectorise at all. The functions here
+// are branch-free basic arithmetic. They take and return floats and work in double inside, so that plain
+// polynomials without compensation are right to 1 ulp; the polynomials are minimax fits (Remez) made for this
+// file.
 #pragma once
 
 #include <bit>
@@ -36,7 +37,8 @@ struct SinCos {
 
 namespace detail {
 
-/// Adding and subtracting this rounds a double to an integer, and leaves that integer in the low bits of the sum.
+/// Adding and subtracting this rounds a double to an integer, and leaves that integer in the low bits of the
+/// sum.
 inline constexpr double kRoundMagic = 6755399441055744.0;  // 1.5 * 2^52
 
 struct SinCosD {
@@ -199,7 +201,8 @@ inline float asin_of(float x) {
   return static_cast<float>(x < 0 ? -r : r);
 }
 
-/// Arc cosine in [0, pi] within 1 ulp; the argument is clamped to [-1, 1], because rounding leaves the closed range.
+/// Arc cosine in [0, pi] within 1 ulp; the argument is clamped to [-1, 1], because rounding leaves the closed
+/// range.
 inline float acos_of(float x) {
   const double a = static_cast<double>(min_of(std::abs(x), 1.0f));
   const bool large = a > 0.5;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/vec.h"
 
@@ -31,7 +32,7 @@ inline DoubleDouble exact_product(double a, double b) {
 
 inline DoubleDouble operator-(const DoubleDouble& a) { return {-a.hi, -a.lo}; }
 
-inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
+[[gnu::always_inline]] inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble s = exact_sum(a.hi, b.hi), t = exact_sum(a.lo, b.lo);
   const double lo = s.lo + t.hi, hi = s.hi + lo;
   const double rest = (lo - (hi - s.hi)) + t.lo, sum = hi + rest;
@@ -40,14 +41,19 @@ inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
 
 inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { return a + (-b); }
 
-inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
+[[gnu::always_inline]] inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
   const DoubleDouble p = exact_product(a.hi, b.hi);
   const double lo = p.lo + (a.hi * b.lo + a.lo * b.hi), hi = p.hi + lo;
   return {hi, lo - (hi - p.hi)};
 }
 
+/// ax bx + ay by + az bz to 106 bits.
+[[gnu::always_inline]] inline DoubleDouble exact_dot(double ax, double ay, double az, double bx, double by, double bz) {
+  return exact_product(ax, bx) + exact_product(ay, by) + exact_product(az, bz);
+}
+
 /// a / b rounded to double; infinite or NaN where the quotient of the leading parts is.
-inline double quotient(const DoubleDouble& a, const DoubleDouble& b) {
+[[gnu::always_inline]] inline double quotient(const DoubleDouble& a, const DoubleDouble& b) {
   const double t = a.hi / b.hi;
   const DoubleDouble rest = a - b * DoubleDouble{t, 0};
   const double correction = rest.hi / b.hi;
@@ -57,16 +63,16 @@ inline double quotient(const DoubleDouble& a, const DoubleDouble& b) {
 /// The roots t0 <= t1 of a t^2 + 2 half_b t + c = 0, each within one unit in the last place of the exact root of
 /// these coefficients. Returns false when there are none. Where a is 0 the one root is finite and the other
 /// infinite; where nothing determines a root it is NaN, which no comparison accepts.
-inline bool solve_quadratic(const DoubleDouble& a, const DoubleDouble& half_b, const DoubleDouble& c, double& t0,
-                            double& t1) {
+[[gnu::always_inline]] inline bool solve_quadratic(const DoubleDouble& a, const DoubleDouble& half_b,
+                                                   const DoubleDouble& c, double& t0, double& t1) {
   const DoubleDouble d = half_b * half_b - a * c;
   const bool real = d.hi >= 0;
   const double s = std::sqrt(real ? d.hi : 0.0);
   const DoubleDouble rest = d - exact_product(s, s);
   const DoubleDouble root = exact_sum(s, s > 0 ? rest.hi / (2 * s) : 0.0);
   // Both terms of q have the same sign: nothing cancels.
-  const bool positive = half_b.hi >= 0;
-  const DoubleDouble q = -(half_b + (positive ? root : -root));
+  const double sign = half_b.hi >= 0 ? 1.0 : -1.0;
+  const DoubleDouble q = -(half_b + DoubleDouble{sign * root.hi, sign * root.lo});
   const double ta = quotient(q, a), tb = quotient(c, q);
   t0 = ta < tb ? ta : tb;
   t1 = ta < tb ? tb : ta;
@@ -77,16 +83,20 @@ inline bool solve_quadratic(const DoubleDouble& a, const DoubleDouble& half_b, c
 struct AxialQuadric {
   double wx = 1, wz = 0, lz = 0, w = 0;
 
-  /// The values of t at which o + t d lies on it; false when there are none.
-  bool roots(const Vec3d& o, const Vec3d& d, double& t0, double& t1) const {
-    const auto square = [](double p, double q) { return exact_product(p, q); };
+  /// The values t0 <= t1 at which the line o + t d meets it; NaN when it does not.
+  [[gnu::always_inline]] void roots(double ox, double oy, double oz, double dx, double dy, double dz, double& t0,
+                                    double& t1) const {
     const DoubleDouble dwx{wx, 0}, dwz{wz, 0}, dlz{lz, 0};
-    const DoubleDouble a = dwx * (square(d.x, d.x) + square(d.y, d.y)) + dwz * square(d.z, d.z);
+    const DoubleDouble a = dwx * (exact_product(dx, dx) + exact_product(dy, dy)) + dwz * exact_product(dz, dz);
     const DoubleDouble half_b =
-        dwx * (square(o.x, d.x) + square(o.y, d.y)) + dwz * square(o.z, d.z) + dlz * DoubleDouble{d.z, 0};
-    const DoubleDouble c = dwx * (square(o.x, o.x) + square(o.y, o.y)) + dwz * square(o.z, o.z) +
-                           dlz * DoubleDouble{2 * o.z, 0} + DoubleDouble{w, 0};
-    return solve_quadratic(a, half_b, c, t0, t1);
+        dwx * (exact_product(ox, dx) + exact_product(oy, dy)) + dwz * exact_product(oz, dz) + dlz * DoubleDouble{dz, 0};
+    const DoubleDouble c = dwx * (exact_product(ox, ox) + exact_product(oy, oy)) + dwz * exact_product(oz, oz) +
+                           dlz * DoubleDouble{2 * oz, 0} + DoubleDouble{w, 0};
+    double near_root, far_root;
+    const bool real = solve_quadratic(a, half_b, c, near_root, far_root);
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    t0 = real ? near_root : kNone;
+    t1 = real ? far_root : kNone;
   }
 
   Vec3d gradient(const Vec3d& p) const { return {2 * wx * p.x, 2 * wx * p.y, 2 * (wz * p.z + lz)}; }
@@ -108,15 +118,26 @@ struct AxialQuadric {
 /// z_shift on the z axis; covers() gets points relative to that.
 template <class Rays, class Covers>
 void intersect_quadric(const Rays& rays, const AxialQuadric& quadric, const Covers& covers, double z_shift = 0) {
-  for (int i = 0; i < rays.n; ++i) {
-    const Vec3d o{rays.ox[i], rays.oy[i], rays.oz[i] - z_shift}, d{rays.dx[i], rays.dy[i], rays.dz[i]};
-    double t0, t1;
-    if (!quadric.roots(o, d, t0, t1)) continue;
-    const auto hits = [&](double t) { return t > rays.t_min[i] && t < rays.t[i] && covers(o + t * d); };
-    if (hits(t0)) {
-      rays.t[i] = t0;
-    } else if (hits(t1)) {
-      rays.t[i] = t1;
+  constexpr int kBlock = 16;
+  double near_root[kBlock], far_root[kBlock];
+  for (int first = 0; first < rays.n; first += kBlock) {
+    const int n = std::min(kBlock, rays.n - first);
+    const double *ox = rays.ox + first, *oy = rays.oy + first, *oz = rays.oz + first;
+    const double *dx = rays.dx + first, *dy = rays.dy + first, *dz = rays.dz + first;
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      quadric.roots(ox[i], oy[i], oz[i] - z_shift, dx[i], dy[i], dz[i], near_root[i], far_root[i]);
+    }
+    for (int i = 0; i < n; ++i) {
+      const auto hits = [&](double t) {
+        return t > rays.t_min[first + i] && t < rays.t[first + i] &&
+               covers(Vec3d(ox[i] + t * dx[i], oy[i] + t * dy[i], oz[i] - z_shift + t * dz[i]));
+      };
+      if (hits(near_root[i])) {
+        rays.t[first + i] = near_root[i];
+      } else if (hits(far_root[i])) {
+        rays.t[first + i] = far_root[i];
+      }
     }
   }
 }

@@ -49,6 +49,16 @@ inline void owen_base3_digit(uint32_t& index, uint32_t& key, uint32_t& value) {
   key = hash_combine(key, digit);
 }
 
+/// The lowest `digits` base 3 digits of x in reverse order: the radical inverse times 3^digits.
+inline uint32_t reverse_base3(uint32_t x, int digits) {
+  uint32_t out = 0;
+  for (int d = 0; d < digits; ++d) {
+    out = 3 * out + x % 3;
+    x /= 3;
+  }
+  return out;
+}
+
 /// The number of base 3 digits that tell `count` >= 1 indices apart, at least 1.
 inline int base3_digits(uint32_t count) {
   int digits = 1;

@@ -12,9 +12,10 @@
 
 namespace whit {
 
-/// Runs body(i) for i in [0, n) as vectorisable, independent iterations.
+/// Runs body(i) for i in [0, n) as vectorisable, independent iterations. Flattened: a body that is not inlined to
+/// its last call does not vectorise, and the compiler finds most bodies too big to inline by itself.
 template <class Body>
-inline void for_lanes(int n, const Body& body) {
+[[gnu::flatten]] inline void for_lanes(int n, const Body& body) {
 #pragma omp simd
   for (int i = 0; i < n; ++i) body(i);
 }

@@ -78,8 +78,9 @@ inline float microfacet_reflection(const Distribution& d, const Pair& p, Fresnel
   return e > 0 && p.zi != 0 ? value * p.reflects : 0.0f;
 }
 
-/// Refraction by microfacets times |cos_i|, for weight 1, radiance. Walter et al. 2007, equation 21; their eta^2 and
-/// radiance's 1 / eta^2 cancel, and the denominator is the squared length of the unnormalised half vector.
+/// Refraction by microfacets times |cos_i|, for weight 1, radiance. Walter et al. 2007, equation 21; their
+/// eta^2 and radiance's 1 / eta^2 cancel, and the denominator is the squared length of the unnormalised half
+/// vector.
 template <class Distribution>
 inline float microfacet_transmission(const Distribution& d, const Pair& p, float eta) {
   const float n = relative_index(p.zo, eta);
@@ -93,7 +94,8 @@ inline float microfacet_transmission(const Distribution& d, const Pair& p, float
   const float density = trowbridge_reitz(e > 0 ? e : 1.0f, d.alpha_xy());
   const float value = (1 - fresnel_dielectric(oh, eta)) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) /
                       (smith_sum(d, p) * (length2 > 0 ? length2 : 1.0f));
-  // Both cosines of a facet that refracts have different signs, and so have those of the surface.
+  // Both cosines of a facet that refracts have different signs, and so have those of the surface. Facets seen
+  // from behind are not excluded, as they are not in pbrt-v3: only very rough glass has any.
   return e > 0 && p.zo * p.zi < 0 && oh * ih <= 0 ? value * p.transmits : 0.0f;
 }
 

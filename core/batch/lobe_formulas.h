@@ -1,16 +1,17 @@
 // The scalar formulas of the lobes: branch-free, so that a loop over lanes vectorises.
 //
-// Sources: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., chapter 8 (as pbrt-v3 has them); Walter,
-// Marschner, Li, Torrance, Microfacet Models for Refraction, 2007; Heitz, Understanding the Masking-Shadowing
-// Function, 2014. They are rearranged so that nothing cancels and nothing divides by a cosine that may be 0.
+// Sources: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., chapter 8 (as pbrt-v3 has them);
+// Walter, Marschner, Li, Torrance, Microfacet Models for Refraction, 2007; Heitz, Understanding the
+// Masking-Shadowing Function, 2014. They are rearranged so that nothing cancels and nothing divides by a
+// cosine that may be 0.
 #pragma once
 
 #include "core/base/fastmath.h"
 
 namespace whit {
 
-/// The index of the far side over that of the near side, for a direction whose cosine to the normal is cos_near.
-/// `eta` is the index inside over the index outside; the normal points outside.
+/// The index of the far side over that of the near side, for a direction whose cosine to the normal is
+/// cos_near. `eta` is the index inside over the index outside; the normal points outside.
 inline float relative_index(float cos_near, float eta) { return cos_near > 0 ? eta : 1 / eta; }
 
 /// What Snell's law makes of a direction with cosine cos_i at a boundary of relative index n (far over near).
@@ -27,9 +28,9 @@ inline Refraction snell(float cos_i, float n) {
   return {k, c, g2, safe_sqrt(g2)};
 }
 
-/// Unpolarised Fresnel reflectance in [0, 1] of a dielectric boundary, from the side cos_i (signed) says. An index of 1
-/// is invisible at every angle; total internal reflection gives 1.
-/// The usual quotients (c - g)/(c + g) and (n^2 c - g)/(n^2 c + g), extended by their denominators, because c - g cancels.
+/// Unpolarised Fresnel reflectance in [0, 1] of a dielectric boundary, from the side cos_i (signed) says. An
+/// index of 1 is invisible at every angle; total internal reflection gives 1. The usual quotients (c - g)/(c
+/// + g) and (n^2 c - g)/(n^2 c + g), extended by their denominators, because c - g cancels.
 inline float fresnel_dielectric(float cos_i, float eta) {
   const float n = relative_index(cos_i, eta);
   const Refraction r = snell(cos_i, n);
@@ -51,12 +52,13 @@ inline float roughness_to_alpha(float roughness) {
 /// pbrt-v3's smallest alpha.
 inline constexpr float kMinAlpha = 1e-3f;
 
-/// Trowbridge-Reitz density of facet normals, per steradian of projected area, from e = z^2 + (x/alpha_x)^2 + (y/alpha_y)^2 of the
-/// half vector and the product of the alphas.
+/// Trowbridge-Reitz density of facet normals, per steradian of projected area, from e = z^2 + (x/alpha_x)^2 +
+/// (y/alpha_y)^2 of the half vector and the product of the alphas.
 inline float trowbridge_reitz(float e, float alpha_xy) { return 1 / (kPi * alpha_xy * e * e); }
 
-/// |cos| (1 + 2 Lambda): the masking term of one direction, from its cosine c and (x alpha_x)^2 + (y alpha_y)^2.
-/// With it Smith's height-correlated G / (4 c_i c_o) is 1 / (2 (s_o c_i + s_i c_o)), finite at grazing angles.
+/// |cos| (1 + 2 Lambda): the masking term of one direction, from its cosine c and (x alpha_x)^2 + (y
+/// alpha_y)^2. With it Smith's height-correlated G / (4 c_i c_o) is 1 / (2 (s_o c_i + s_i c_o)), finite at
+/// grazing angles.
 inline float smith_term(float c, float stretched2) { return std::sqrt(c * c + stretched2); }
 
 /// Oren-Nayar's A and B for sigma in radians.
@@ -69,7 +71,8 @@ inline OrenNayarAB oren_nayar_ab(float sigma) {
 }
 
 /// Oren-Nayar's factor of weight / pi, from the absolute cosines and wi . wo of the tangential parts: its
-/// max(0, cos dphi) sin(alpha) tan(beta) is max(0, tangential dot) / max(c_i, c_o), because alpha is the larger angle.
+/// max(0, cos dphi) sin(alpha) tan(beta) is max(0, tangential dot) / max(c_i, c_o), because alpha is the
+/// larger angle.
 inline float oren_nayar(float a, float b, float c_i, float c_o, float tangential) {
   const float c = max_of(c_i, c_o);
   return a + b * (max_of(tangential, 0.0f) / (c > 0 ? c : 1.0f));

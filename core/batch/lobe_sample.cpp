@@ -1,5 +1,5 @@
-// Importance sampling of the non-specular lobes. Plain scalar code, lane by lane: the Whitted integrator samples lights
-// and delta lobes only.
+// Importance sampling of the non-specular lobes. Plain scalar code, lane by lane: the Whitted integrator
+// samples lights and delta lobes only.
 #include "core/batch/lobe_eval.h"
 #include "core/batch/lobe_formulas.h"
 
@@ -32,7 +32,8 @@ float visible_normal_pdf(const Vec3f& wo, const Vec3f& h, float ax, float ay) {
   return density * abs_dot(wo, h) * 2 / (c + smith_term(c, sx * sx + sy * sy));
 }
 
-/// Samples the visible normals of the side wo is on. Heitz, Sampling the GGX Distribution of Visible Normals, JCGT 2018.
+/// Samples the visible normals of the side wo is on. Heitz, Sampling the GGX Distribution of Visible Normals,
+/// JCGT 2018.
 Vec3f sample_visible_normal(const Vec3f& wo, float ax, float ay, float u, float v) {
   const float side = wo.z < 0 ? -1.0f : 1.0f;
   const Vec3f up = wo * side;
@@ -63,7 +64,8 @@ float transmission_pdf(const Vec3f& wo, const Vec3f& wi, float ax, float ay, flo
   const float n = relative_index(wo.z, eta);
   const Vec3f sum = wo + wi * n, h = normalize(sum);
   const float length2 = dot(sum, sum), oh = dot(wo, h), ih = dot(wi, h);
-  if (length2 == 0 || oh * ih > 0) return 0;
+  // Facets seen from behind are not visible, hence never sampled.
+  if (length2 == 0 || oh * ih > 0 || oh * h.z * wo.z <= 0) return 0;
   return visible_normal_pdf(wo, h, ax, ay) * n * n * std::abs(ih) / length2;
 }
 

@@ -73,8 +73,8 @@ inline Delta reflect(const Vec3f& wo, const Vec3f& n, FresnelType fresnel, float
   return {wi, z != 0 ? f : 0.0f};
 }
 
-/// Snell's law in vector form. The coefficient of the normal, (cos_o - n cos_t) / n, is written without the difference,
-/// so that a ray passes an index of 1 undeflected.
+/// Snell's law in vector form. The coefficient of the normal, (cos_o - n cos_t) / n, is written without the
+/// difference, so that a ray passes an index of 1 undeflected.
 inline Delta refract(const Vec3f& wo, const Vec3f& normal, float eta) {
   const float z = dot(wo, normal);
   const float n = relative_index(z, eta);

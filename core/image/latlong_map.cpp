@@ -1,17 +1,21 @@
 #include "core/image/latlong_map.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "core/base/fastmath.h"
-#include "core/image/texels.h"
+#include "core/image/image.h"
 
 namespace whit {
 namespace {
 
-/// How much a colour counts in sampling: its luminance; magnitudes, because colours out of gamut have negative parts.
+/// How much a colour counts in sampling: its luminance, in double because floats could overflow; of magnitudes,
+/// because colours out of gamut have negative parts.
 double importance(const float* c) {
-  return static_cast<double>(luminance(RGB(std::abs(c[0]), std::abs(c[1]), std::abs(c[2]))));
+  const auto part = [&](int i) { return std::abs(static_cast<double>(c[i])); };
+  return 0.212671 * part(0) + 0.715160 * part(1) + 0.072169 * part(2);
 }
 
 constexpr int kBlock = 128;
@@ -37,28 +41,29 @@ inline Vec2f map_coordinates(const Vec3f& d, float width, float height) {
 
 }  // namespace
 
-LatLongMap::LatLongMap(const Image& image, const RGB& factor, LatLongRule rule, size_t& bad_texels) : rule_(rule) {
-  build_texels(image, factor, bad_texels);
+LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) : rule_(rule) {
+  build_radiance(std::move(texels), factor, bad_numbers);
   build_bands();
   build_cells();
 }
 
-void LatLongMap::build_texels(const Image& image, const RGB& factor, size_t& bad_texels) {
-  Texels t = make_texels(image, false, false, 1, false);
-  bad_texels = 0;
-  for (float& v : t.values) {
-    if (v >= 0 && v <= std::numeric_limits<float>::max()) continue;
-    v = 0, ++bad_texels;
+void LatLongMap::build_radiance(Texels texels, const RGB& factor, size_t& bad_numbers) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  bad_numbers = 0;
+  for (float& v : texels.values) {
+    if (v >= 0 && v <= kMost) continue;
+    v = 0, ++bad_numbers;
   }
-  if (rule_ == LatLongRule::Pbrt) t = resample_to_power_of_two(std::move(t), WrapMode::Repeat);
-  width_ = t.width, height_ = t.height;
-  const auto count = static_cast<size_t>(width_) * static_cast<size_t>(height_);
-  const auto channels = static_cast<size_t>(t.channels);
-  texels_.resize(3 * count);
-  for (size_t i = 0; i < count; ++i) {
-    const float* v = t.values.data() + i * channels;
-    for (int c = 0; c < 3; ++c) texels_[3 * i + static_cast<size_t>(c)] = v[channels == 3 ? c : 0] * factor[c];
+  if (rule_ == LatLongRule::Pbrt) texels = resample_to_power_of_two(std::move(texels), WrapMode::Repeat);
+  width_ = texels.width, height_ = texels.height;
+  const size_t pixels = static_cast<size_t>(width_) * static_cast<size_t>(height_);
+  if (texels.channels == 1) {
+    std::vector<float> rgb(3 * pixels);
+    for (size_t i = 0; i < rgb.size(); ++i) rgb[i] = texels.values[i / 3];
+    texels.values = std::move(rgb);
   }
+  radiance_ = std::move(texels.values);
+  for (size_t i = 0; i < radiance_.size(); ++i) radiance_[i] = clamp_to(radiance_[i] * factor[i % 3], -kMost, kMost);
 }
 
 void LatLongMap::build_bands() {
@@ -88,22 +93,19 @@ int LatLongMap::row_below(int band) const {
 
 void LatLongMap::build_cells() {
   const auto columns = static_cast<size_t>(width_);
-  std::vector<double> weights(columns * bands_.size());
-  for (int k = 0; k <= height_; ++k) {
-    // The mean of a bilinear function is that of its corners; the half bands at the poles see a part of the slope.
-    const double below = k == 0 ? 0.75 : (k == height_ ? 0.25 : 0.5),
-                 solid_angle = 1 / static_cast<double>(bands_[k].density);
-    const float* upper = texels_.data() + 3 * columns * static_cast<size_t>(row_above(k));
-    const float* lower = texels_.data() + 3 * columns * static_cast<size_t>(row_below(k));
+  cells_ = GridDistribution(width_, height_ + 1, [&](int k, std::span<double> weights) {
+    // The mean of a bilinear function is that of its corners; the half bands at the poles see half of the slope.
+    const double below = k == 0 ? 0.75 : (k == height_ ? 0.25 : 0.5);
+    const double solid_angle = 1 / static_cast<double>(bands_[static_cast<size_t>(k)].density);
+    const float* upper = radiance_.data() + 3 * columns * static_cast<size_t>(row_above(k));
+    const float* lower = radiance_.data() + 3 * columns * static_cast<size_t>(row_below(k));
     const auto column_value = [&](size_t i) {
       return (1 - below) * importance(upper + 3 * i) + below * importance(lower + 3 * i);
     };
-    double* out = weights.data() + columns * static_cast<size_t>(k);
     for (size_t i = 0; i < columns; ++i) {
-      out[i] = solid_angle * 0.5 * (column_value(i) + column_value(i + 1 < columns ? i + 1 : 0));
+      weights[i] = solid_angle * 0.5 * (column_value(i) + column_value(i + 1 < columns ? i + 1 : 0));
     }
-  }
-  cells_ = GridDistribution(width_, height_ + 1, weights);
+  });
 }
 
 void LatLongMap::evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const {
@@ -122,7 +124,7 @@ void LatLongMap::evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, f
 
 /// The bilinear radiance at n map coordinates.
 void LatLongMap::look_up(int n, const float* x, const float* y, const RGBLanes& out) const {
-  const float* texels = texels_.data();
+  const float* texels = radiance_.data();
   const int columns = width_, rows = height_, above_top = row_above(0), below_bottom = row_below(height_);
   for_lanes(n, [=](int i) {
     const Cell cx = cell_at(x[i], columns), cy = cell_at(y[i], rows);
@@ -170,23 +172,28 @@ void LatLongMap::sample(int n, const float* u, const float* v, const Vec3Lanes& 
 
 std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, const RGB& factor, LatLongRule rule,
                                                    const PrepareContext& ctx) {
-  const Result<Image> image = read_image(path);
-  if (!image.ok()) {
-    ctx.diagnostics->file_error(ctx.statement, image.error);
-    return nullptr;
-  }
-  constexpr int64_t kMostTexels = int64_t{1}
-                                  << 28;  // indices of their numbers are 32 bits, enlarging is by less than 4
-  if (static_cast<int64_t>(image.value.width) * image.value.height > kMostTexels / 4) {
-    ctx.diagnostics->file_error(ctx.statement, path + ": a map of " + std::to_string(image.value.width) + " x " +
-                                                   std::to_string(image.value.height) + " pixels is too large");
-    return nullptr;
-  }
-  size_t bad_texels = 0;
-  auto map = std::make_unique<const LatLongMap>(image.value, factor, rule, bad_texels);
-  if (bad_texels > 0) {
+  Texels texels;
+  {
+    const Result<Image> image = read_image(path);
+    if (!image.ok()) {
+      ctx.diagnostics->file_error(ctx.statement, image.error);
+      return nullptr;
+    }
+    // Numbers of texels, enlarged to powers of two, are counted in 32 bits.
+    const auto enlarged = [](int side) { return int64_t{std::bit_ceil(static_cast<uint32_t>(side))}; };
+    if (enlarged(image.value.width) * enlarged(image.value.height) > int64_t{1} << 29) {
+      ctx.diagnostics->file_error(ctx.statement, path + ": " + std::to_string(image.value.width) + " x " +
+                                                     std::to_string(image.value.height) +
+                                                     " pixels are too many for an environment map");
+      return nullptr;
+    }
+    texels = make_texels(image.value, false, false, 1, false);
+  }  // the picture goes here: large maps are not held twice
+  size_t bad_numbers = 0;
+  auto map = std::make_unique<const LatLongMap>(std::move(texels), factor, rule, bad_numbers);
+  if (bad_numbers > 0) {
     ctx.diagnostics->warning(ctx.statement,
-                             path + ": " + std::to_string(bad_texels) + " numbers are negative, infinite or NaN",
+                             path + ": " + std::to_string(bad_numbers) + " numbers are negative, infinite or NaN",
                              "they count as 0");
   }
   return map;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/distribution.h"
-#include "core/image/image.h"
+#include "core/image/texels.h"
 #include "core/plugin/environment.h"
 
 namespace whit {
@@ -24,9 +24,9 @@ enum class LatLongRule : uint8_t {
 /// the density is positive wherever the radiance is, and has no singularity at the poles.
 class LatLongMap final : public DirectionalRadiance {
  public:
-  /// Radiances are the picture's raw numbers times `factor`. Numbers that are negative, infinite or NaN count as 0;
-  /// `bad_texels` returns how many there were.
-  LatLongMap(const Image& image, const RGB& factor, LatLongRule rule, size_t& bad_texels);
+  /// Radiances are the texels times `factor`. Numbers that are negative, infinite or NaN count as 0; `bad_numbers`
+  /// returns how many there were.
+  LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers);
 
   void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const override;
   void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override;
@@ -41,7 +41,7 @@ class LatLongMap final : public DirectionalRadiance {
 
   void look_up(int n, const float* x, const float* y, const RGBLanes& out) const;
   void find_density(int n, const float* x, const float* y, float* pdf) const;
-  void build_texels(const Image& image, const RGB& factor, size_t& bad_texels);
+  void build_radiance(Texels texels, const RGB& factor, size_t& bad_numbers);
   void build_bands();
   void build_cells();
   /// The texel rows a band lies between; at the poles by the rule.
@@ -50,8 +50,8 @@ class LatLongMap final : public DirectionalRadiance {
 
   int width_ = 0, height_ = 0;
   LatLongRule rule_;
-  std::vector<float> texels_;  ///< RGB, row by row.
-  std::vector<Band> bands_;    ///< height + 1: band k lies between the centres of texel rows k - 1 and k.
+  std::vector<float> radiance_;  ///< RGB, row by row.
+  std::vector<Band> bands_;      ///< height + 1: band k lies between the centres of texel rows k - 1 and k.
   GridDistribution cells_;
 };
 

@@ -236,7 +236,7 @@ void MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const
       return sampler.coarsest();
     if (!filter.trilinear) return sampler.ewa(s, t, dx, dy, anisotropy);
     const float widest = std::max({std::abs(dx[0]), std::abs(dx[1]), std::abs(dy[0]), std::abs(dy[1])});
-    return sampler.trilinear(s, t, 2 * widest);
+    return sampler.trilinear(s, t, widest);
   };
   const auto run = [&](const auto& sampler) {
     for (int i = 0; i < p.n; ++i)

@@ -35,7 +35,8 @@ float* displacement_beside(const Tex<float>& displacement, const ShadingBatch& s
   return displacement(moved);
 }
 
-/// Adds the displacement's slope along the normal, and the normal's own change, to a tangent. All lengths in render units.
+/// Adds the displacement's slope along the normal, and the normal's own change, to a tangent. All lengths in
+/// render units.
 void displace_tangent(int n, const Vec3Lanes& tangent, const float* here, const float* beside, const float* step,
                       float scale, const Vec3Lanes& normal, const Vec3Lanes& normal_derivative) {
   for_lanes(n, [&](int i) {
@@ -59,7 +60,8 @@ void apply_bump(const Tex<float>& displacement, float scale, ShadingBatch& s) {
   displace_tangent(s.n, s.dpdu, here, beside_u, du, scale, s.ns, s.dndu);
   displace_tangent(s.n, s.dpdv, here, beside_v, dv, scale, s.ns, s.dndv);
   for_lanes(s.n, [&](int i) {
-    // Facing ng makes the handedness of (dpdu, dpdv) irrelevant. Each is scaled first: their product may underflow.
+    // Facing ng makes the handedness of (dpdu, dpdv) irrelevant. Each is scaled first: their product may
+    // underflow.
     const Vec3f c = normalize(cross(normalize_any(s.dpdu[i]), normalize_any(s.dpdv[i])));
     const Vec3f n = face_forward(c, s.ng[i]), old = s.ns[i];
     const bool usable = dot(c, c) > 0.5f;  // not where the tangents are parallel, or NaN

@@ -31,22 +31,34 @@ struct EnvironmentLight::Block {
   float* distance = storage[9];  ///< Render space; infinity at infinity, 0 where nothing is seen.
 };
 
+namespace {
+
+/// The determinant of the linear part: the volume of the box that the images of the axes span.
+double linear_determinant(const Mat4d& m) {
+  const auto row = [&](int i) { return Vec3d(m[i][0], m[i][1], m[i][2]); };
+  return row(0).dot(row(1).cross(row(2)));
+}
+
+}  // namespace
+
+/// The linear part of m times `scale`.
+EnvironmentLight::Linear EnvironmentLight::linear(const Mat4d& m, double scale) {
+  const auto row = [&](int i) { return Vec3f(Vec3d(m[i][0], m[i][1], m[i][2]) * scale); };
+  return {row(0), row(1), row(2)};
+}
+
 bool EnvironmentLight::set_frame(const PrepareContext& ctx, const Vec3d& center, double radius, bool finite) {
   const Mat4d to_render =
       Mat4d().setScale(radius) * Mat4d().setTranslation(center) * light_to_world * ctx.space.from_world();
-  const auto row = [](const Mat4d& m, int i) { return Vec3d(m[i][0], m[i][1], m[i][2]); };
-  const double det = row(to_render, 0).dot(row(to_render, 1).cross(row(to_render, 2)));
+  const double det = linear_determinant(to_render);
   const double size = std::cbrt(std::abs(det));
   if (!(std::isfinite(size) && size > 0 && std::isfinite(1 / det))) {
     ctx.diagnostics->error(ctx.statement, "the transform of this light cannot be inverted");
     return false;
   }
   const Mat4d to_sky = to_render.inverse();
-  for (int i = 0; i < 3; ++i) {
-    point_to_sky_.rows[i] = Vec3f(row(to_sky, i));
-    direction_to_sky_.rows[i] = Vec3f(row(to_sky, i) * size);
-    direction_to_render_.rows[i] = Vec3f(row(to_render, i) / size);
-  }
+  point_to_sky_ = linear(to_sky, 1), direction_to_sky_ = linear(to_sky, size);
+  direction_to_render_ = linear(to_render, 1 / size);
   sky_origin_ = Vec3f(transform_point(to_sky, {0, 0, 0}));
   size_ = static_cast<float>(size);
   finite_ = finite;
@@ -57,7 +69,7 @@ namespace {
 
 /// Where a line through o (sky space) in unit direction d leaves the unit sphere, and how far away that is.
 struct SkyPoint {
-  Vec3f p;         ///< Unit.
+  Vec3f p;         ///< Unit; meaningless, and NaN from very far away, where distance is 0.
   float distance;  ///< 0 where the line misses the sphere or the sphere lies behind.
   float cosine;    ///< Between the line and the sphere's normal there, >= 0.
 };
@@ -75,9 +87,8 @@ inline SkyPoint far_intersection(const Vec3f& o, const Vec3f& d) {
   const float cosine = safe_sqrt(1 - dot(foot, foot));
   // The two roots are -along +- cosine and their product is o.o - 1: of the two forms the one that does not cancel.
   const float distance = along > 0 ? (1 - dot(o, o)) / (along + cosine) : cosine - along;
-  const bool seen = cosine > 0 && distance > 0;
-  const Vec3f p = foot + d * cosine;
-  return {normalize(Vec3f(seen ? p.x : 0.0f, seen ? p.y : 0.0f, seen ? p.z : 1.0f)), seen ? distance : 0.0f, cosine};
+  const float ahead = cosine > 0 ? distance : 0.0f;
+  return {normalize(foot + d * cosine), max_of(ahead, 0.0f), cosine};
 }
 
 }  // namespace
@@ -101,7 +112,8 @@ void EnvironmentLight::find_sky(int n, const Vec3Lanes& p, const Vec3Lanes& d, c
   }
   const Vec3f origin = sky_origin_;
   const float size = size_;
-  for_lanes(n, [=](int i) {
+  // Too large for GCC to inline by itself, and a call would keep the loop from vectorising.
+  const auto find = [=](int i) __attribute__((always_inline)) {
     const Vec3f v = direction_to_sky(d[i]), o = origin + point_to_sky(p[i]);
     const float inverse = 1 / length(v);
     const SkyPoint s = far_intersection(o, v * inverse);
@@ -112,11 +124,12 @@ void EnvironmentLight::find_sky(int n, const Vec3Lanes& p, const Vec3Lanes& d, c
     jacobian[i] = (1 - share) * stretch * area;
     even[i] = s.distance > 0 ? share * stretch * (0.25f * kInvPi) : 0.0f;
     distance[i] = s.distance * size * inverse;
-  });
+  };
+  for_lanes(n, find);
 }
 
 /// Draws directions from points p: of the sky as seen from its centre, and on a sphere an even share from p itself.
-/// `aimed` is 0 where a point of the sphere shows its outside, 1 elsewhere.
+/// `aimed` is 0 where a point of the sphere shows its outside, positive elsewhere.
 void EnvironmentLight::aim(int n, const Vec3Lanes& p, const float* u, const float* v, const Vec3Lanes& wi, float* aimed,
                            Block& b) const {
   const Linear direction_to_render = direction_to_render_, point_to_sky = point_to_sky_;
@@ -139,7 +152,7 @@ void EnvironmentLight::aim(int n, const Vec3Lanes& p, const float* u, const floa
     const bool evenly = v[i] < share[i];
     const Vec3f d(evenly ? any.x : across.x, evenly ? any.y : across.y, evenly ? any.z : across.z);
     wi.set(i, normalize(direction_to_render(d)));
-    aimed[i] = evenly || dot(across, target) > 0 ? 1.0f : 0.0f;
+    aimed[i] = evenly ? 1.0f : max_of(dot(across, target), 0.0f);
   });
 }
 
@@ -156,8 +169,9 @@ void EnvironmentLight::sample(const LightSamples& s) const {
     const float *pdf = b.pdf, *jacobian = b.jacobian, *even = b.even, *far = b.distance;
     for_lanes(n, [=](int i) {
       const float density = pdf[i] * jacobian[i] + even[i];
-      const float weight = density > 0 && distance[i] > 0 ? 1 / density : 0.0f;
-      out.set(i, {seen.r[i] * weight, seen.g[i] * weight, seen.b[i] * weight});
+      const float weight = distance[i] > 0 ? 1 / density : 0.0f;
+      const bool lit = density > 0;  // false where the density is NaN, too
+      out.set(i, {lit ? seen.r[i] * weight : 0.0f, lit ? seen.g[i] * weight : 0.0f, lit ? seen.b[i] * weight : 0.0f});
       distance[i] = far[i];
     });
   }
@@ -172,8 +186,9 @@ void EnvironmentLight::add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d
     const RGBLanes sum = out.from(first), seen = b.radiance;
     const float* distance = b.distance;
     for_lanes(count, [=](int i) {
-      const float visible = distance[i] > 0 ? 1.0f : 0.0f;
-      sum.r[i] += visible * seen.r[i], sum.g[i] += visible * seen.g[i], sum.b[i] += visible * seen.b[i];
+      const bool visible = distance[i] > 0;
+      sum.r[i] += visible ? seen.r[i] : 0.0f, sum.g[i] += visible ? seen.g[i] : 0.0f;
+      sum.b[i] += visible ? seen.b[i] : 0.0f;
     });
   }
 }

@@ -35,6 +35,9 @@ class UniformRadiance final : public DirectionalRadiance {
 /// the ray's line meets the sphere, if that point is ahead: from inside always, from outside through the whole sphere
 /// where the ray meets it at all, and black elsewhere.
 ///
+/// Directions are drawn by what is seen from the centre; on a sphere, from points off its centre, a part of them
+/// evenly, because near the wall a small part of the sphere fills half of the view.
+///
 /// Radiance and density reported by sample(), add_escaped() and pdf() come from one function of point and direction,
 /// so they agree to the bit. Any light_to_world that can be inverted is allowed; densities carry its Jacobian.
 class EnvironmentLight : public Light {
@@ -59,14 +62,14 @@ class EnvironmentLight : public Light {
  private:
   struct Block;  // Scratch of a run of lanes.
 
-  /// The linear map p' = x rows[0] + y rows[1] + z rows[2].
+  /// A linear map, by the images of the axes. (Not as an array: that would keep loops over lanes from vectorising.)
   struct Linear {
-    Vec3f rows[3];
+    Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     Vec3f operator()(const Vec3f& v) const {
-      return {v.x * rows[0].x + v.y * rows[1].x + v.z * rows[2].x, v.x * rows[0].y + v.y * rows[1].y + v.z * rows[2].y,
-              v.x * rows[0].z + v.y * rows[1].z + v.z * rows[2].z};
+      return {v.x * x.x + v.y * y.x + v.z * z.x, v.x * x.y + v.y * y.y + v.z * z.y, v.x * x.z + v.y * y.z + v.z * z.z};
     }
   };
+  static Linear linear(const Mat4d& m, double scale);
 
   bool set_frame(const PrepareContext& ctx, const Vec3d& center, double radius, bool finite);
   void find_sky(int n, const Vec3Lanes& p, const Vec3Lanes& d, const Block& b) const;

@@ -8,7 +8,8 @@ namespace whit {
 /// An array of s.n times the same number.
 float* filled(const ShadingBatch& s, float value);
 
-/// The Trowbridge-Reitz alphas of a roughness, at least pbrt-v3's 0.001; `remap` applies pbrt's roughness_to_alpha().
+/// The Trowbridge-Reitz alphas of a roughness, at least pbrt-v3's 0.001; `remap` applies pbrt's
+/// roughness_to_alpha().
 float* alphas(const Tex<float>& roughness, bool remap, const ShadingBatch& s);
 
 /// Relative indices of refraction, kept within [0.001, 1000]: a texture may give anything, and no index is 0.

@@ -105,7 +105,8 @@ void add_plugin(PluginInfo info) {
   std::vector<std::string> names = info.aliases;
   names.push_back(info.name);
   for (const std::string& name : names) {
-    // A mistake of the programmer's, caught before main(): the uncaught exception ends the program and names it.
+    // A mistake of the programmer's, caught before main(): the uncaught exception ends the program and names
+    // it.
     if (find_plugin(info.category, name))
       throw std::logic_error("two plugins are " + info.category + " \"" + name + '"');
   }

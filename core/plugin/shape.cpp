@@ -119,4 +119,18 @@ ShapeSample AnalyticShape::sample_from(const Vec3d& ref, double u0, double u1) c
   return s;
 }
 
+void AnalyticShape::sample_lanes(const ShapeSampleLanes& s) const {
+  for (int i = 0; i < s.n; ++i) {
+    const Vec3d ref(s.ref[i]);
+    const ShapeSample sample = sample_from(ref, static_cast<double>(s.u[i]), static_cast<double>(s.v[i]));
+    const Vec3d to = sample.p - ref;
+    const double distance = to.length();
+    const Vec3d wi = distance > 0 ? to / distance : Vec3d(0, 0, 1);
+    s.wi.set(i, Vec3f(wi));
+    s.distance[i] = static_cast<float>(distance);
+    s.cosine[i] = static_cast<float>(-sample.n.dot(wi));
+    s.pdf[i] = distance > 0 ? static_cast<float>(sample.pdf) : 0.0f;
+  }
+}
+
 }  // namespace whit

@@ -79,6 +79,17 @@ struct ShapeSample {
   double pdf;   ///< Density with respect to solid angle at the reference point, or to area (see the call).
 };
 
+/// One sample of a shape for each of n reference points, structure of arrays, in the space of the placement.
+struct ShapeSampleLanes {
+  int n = 0;
+  Vec3Lanes ref;                           ///< In: reference points.
+  const float *u = nullptr, *v = nullptr;  ///< In: uniform numbers in [0,1).
+  Vec3Lanes wi;                            ///< Out: unit direction from ref to the sampled point.
+  float* distance = nullptr;               ///< Out: to the point.
+  float* cosine = nullptr;                 ///< Out: between the front's normal and -wi; negative behind.
+  float* pdf = nullptr;                    ///< Out: per solid angle at ref; 0 when the sample is useless.
+};
+
 /// A shape given by equations. It is placed once: object space to the space of its scene (render space, or
 /// the local space of an object definition).
 class AnalyticShape : public Shape {
@@ -105,6 +116,9 @@ class AnalyticShape : public Shape {
   /// respect to solid angle at ref, 0 when the sample is useless. The default samples by area, with the
   /// exact Jacobian of the placement; the sphere samples its cone.
   virtual ShapeSample sample_from(const Vec3d& ref, double u0, double u1) const;
+
+  /// sample_from() for a batch; by default one by one.
+  virtual void sample_lanes(const ShapeSampleLanes& s) const;
 
  protected:
   Mat4d object_to_scene_, scene_to_object_;

@@ -1,7 +1,7 @@
 // From surface points to texture coordinates: pbrt-v3's four 2D mappings and its 3D mapping.
 //
-// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 10.2. Transforms are composed in double
-// precision and rounded once, so that a scene far from the origin keeps its textures.
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 10.2. Transforms are composed in
+// double precision and rounded once, so that a scene far from the origin keeps its textures.
 #pragma once
 
 #include "core/plugin/registry.h"
@@ -9,8 +9,8 @@
 
 namespace whit {
 
-/// Texture coordinates of a batch, in its arena, and their derivatives along the screen's x and y; these are null when
-/// the batch has no footprints.
+/// Texture coordinates of a batch, in its arena, and their derivatives along the screen's x and y; these are
+/// null when the batch has no footprints.
 struct MappedPoints {
   float *s = nullptr, *t = nullptr;
   float *dsdx = nullptr, *dtdx = nullptr, *dsdy = nullptr, *dtdy = nullptr;
@@ -64,8 +64,8 @@ class Texture2D : public Texture<T> {
 extern template class Texture2D<float>;
 extern template class Texture2D<RGB>;
 
-/// From render space to the space of 3D textures. pbrt-v3 applies the CTM of the Texture statement itself to world
-/// points, not its inverse (its 2D mappings take the inverse), and scenes are made for that.
+/// From render space to the space of 3D textures. pbrt-v3 applies the CTM of the Texture statement itself to
+/// world points, not its inverse (its 2D mappings take the inverse), and scenes are made for that.
 AffineMap mapping_3d(const Mat4d& texture_to_world, const RenderSpace& space);
 
 /// Registers a Texture2D<T> subclass, the mapping's parameters after its own.

@@ -21,6 +21,11 @@ void gather(const int32_t* from, int n, const Vec3Lanes& values, const Vec3Lanes
   gather(from, n, values.z, out.z);
 }
 
+/// Where a shadow ray stops in front of an emitter whose points are off by `error` at most, measured along the ray.
+inline float in_front(float distance, float error, float cosine) {
+  return max_of(0.0f, distance - error / max_of(std::abs(cosine), 1e-3f));
+}
+
 /// Shadow rays stop this fraction short of the light's surface: the rounding of t in the ray tracer.
 constexpr float kShadowShortening = 1 - 4e-6f;
 
@@ -348,7 +353,7 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
     // The front is where a ray that hits sees it (mesh_surfaces): flipped, then turned to the flipped shading normal.
     const Vec3f interpolated = (na * b0 + nb * b1 + nc * b2) * flip;
     Vec3f front = n * flip;
-    const bool turned = has_normals && dot(front, interpolated) < 0;
+    const bool turned = has_normals & (dot(front, interpolated) < 0);
     front = turned ? -front : front;
     const Vec3f to = q - samples.p[i];
     const float squared = dot(to, to);
@@ -356,31 +361,28 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
     const float inverse = squared > 0 ? 1 / distance : 0.0f;
     const Vec3f wi = to * inverse;
     const float cosine = -dot(front, wi);
-    const bool lit = (two_sided ? cosine != 0 : cosine > 0) && squared > 0;
+    const bool lit = (two_sided ? cosine != 0 : cosine > 0) & (squared > 0);
     const float geometry = lit ? std::abs(cosine) * area / squared : 0.0f;
     samples.wi.set(i, wi);
-    // Stop in front of the emitter by the bound on its points' error, measured along the ray.
-    const float stop = back / std::max(std::abs(cosine), 1e-3f);
-    samples.distance[i] = std::max(0.0f, distance - stop);
+    samples.distance[i] = in_front(distance, back, cosine);
     samples.radiance.set(i, {radiance.x * geometry, radiance.y * geometry, radiance.z * geometry});
   });
 }
 
 void Round::sample_analytic(const SceneLight& light, const LightSamples& samples) const {
   const AnalyticShape& shape = *scene_.shapes[static_cast<size_t>(light.shape)].analytic;
-  for (int i = 0; i < samples.n; ++i) {
-    const Vec3d p(samples.p[i]);
-    const ShapeSample s = shape.sample_from(p, samples.u[i], samples.v[i]);
-    const Vec3d to = s.p - p;
-    const double distance = to.length();
-    const Vec3d wi = distance > 0 ? to / distance : Vec3d(0, 0, 1);
-    const double cosine = -s.n.dot(wi);
-    const bool lit = s.pdf > 0 && distance > 0 && (light.two_sided ? cosine != 0 : cosine > 0);
-    samples.wi.set(i, Vec3f(wi));
-    const double error = 6e-7 * (std::abs(s.p.x) + std::abs(s.p.y) + std::abs(s.p.z));
-    samples.distance[i] = static_cast<float>(std::max(0.0, distance - error / std::max(std::abs(cosine), 1e-3)));
-    samples.radiance.set(i, lit ? light.radiance / static_cast<float>(s.pdf) : RGB(0.0f));
-  }
+  float *cosines = arena_.floats(samples.n), *pdfs = arena_.floats(samples.n);
+  shape.sample_lanes({samples.n, samples.p, samples.u, samples.v, samples.wi, samples.distance, cosines, pdfs});
+  const RGB radiance = light.radiance;
+  const bool two_sided = light.two_sided;
+  for_lanes(samples.n, [&](int i) {
+    const float cosine = cosines[i], distance = samples.distance[i];
+    const bool lit = (pdfs[i] > 0) & (two_sided ? cosine != 0 : cosine > 0);
+    const float weight = lit ? 1 / pdfs[i] : 0.0f;
+    samples.radiance.set(i, {radiance.x * weight, radiance.y * weight, radiance.z * weight});
+    const Vec3f q = samples.p[i] + samples.wi[i] * distance;
+    samples.distance[i] = in_front(distance, 6e-7f * (std::abs(q.x) + std::abs(q.y) + std::abs(q.z)), cosine);
+  });
 }
 
 void Round::deliver() {

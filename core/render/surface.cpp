@@ -104,12 +104,13 @@ void triangle_geometry(const TriangleLanes& t, const ShadingBatch& s, const Geom
 }
 
 /// Interpolated normals and tangents, for lanes whose mesh has them; the geometric normal turns to their side.
+template <bool kNormals, bool kTangents>
 void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float* bary_u, const float* bary_v) {
   for_lanes(s.n, [&](int i) {
     const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
-    const Vec3f zero(0, 0, 0);
-    const Vec3f nsum = t.any_normals ? t.n.a[i] * b0 + t.n.b[i] * b1 + t.n.c[i] * b2 : zero;
-    const Vec3f tsum = t.any_tangents ? t.s.a[i] * b0 + t.s.b[i] * b1 + t.s.c[i] * b2 : zero;
+    Vec3f nsum(0, 0, 0), tsum(0, 0, 0);
+    if constexpr (kNormals) nsum = t.n.a[i] * b0 + t.n.b[i] * b1 + t.n.c[i] * b2;
+    if constexpr (kTangents) tsum = t.s.a[i] * b0 + t.s.b[i] * b1 + t.s.c[i] * b2;
     const bool has_n = dot(nsum, nsum) > 0, has_t = dot(tsum, tsum) > 0;
     const auto pick = [](bool c, const Vec3f& a, const Vec3f& b) {
       return Vec3f(c ? a.x : b.x, c ? a.y : b.y, c ? a.z : b.z);
@@ -123,12 +124,12 @@ void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float
     const Frame frame = coordinate_system(ns);
     const Vec3f ts = pick(framed, normalize_any(side), frame.t);
     ss = pick(framed, cross(ts, ns), frame.s);
-    const bool shaded = has_n || has_t;
+    const bool shaded = has_n | has_t;
     const Vec3f turned = ns * flip, ng = s.ng[i];
     s.dpdu.set(i, pick(shaded, ss, s.dpdu[i]));
     s.dpdv.set(i, pick(shaded, ts, s.dpdv[i]));
     s.ns.set(i, pick(shaded, turned, s.ns[i]));
-    s.ng.set(i, pick(shaded && dot(ng, turned) < 0, -ng, ng));
+    s.ng.set(i, pick(shaded & (dot(ng, turned) < 0), -ng, ng));
   });
 }
 
@@ -155,7 +156,9 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
   const TriangleLanes t = gather_triangles(scene, h, first, s.n, arena);
   const float *bu = h.u + first, *bv = h.v + first;
   triangle_geometry(t, s, g, bu, bv);
-  if (t.any_normals || t.any_tangents) triangle_shading(t, s, bu, bv);
+  if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
+  if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
+  if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
   if (s.dndu) triangle_normal_derivatives(t, s);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "core/plugin/registry.h"
 
@@ -72,7 +73,8 @@ class Binder {
     return unknown.fallback ? find_plugin(category, unknown.fallback) : nullptr;
   }
 
-  /// Binds one statement; `params` may differ from the entity's own (shape overrides).
+  /// Binds one statement; `params` may differ from the entity's own (shape overrides), and must live as long as
+  /// the scene: lists stay in it.
   template <class T>
   Bound<T> bind_as(const Entity& entity, const PluginInfo& info, const ParameterList& params,
                    const std::vector<const PluginInfo*>& also_known = {}) {
@@ -95,8 +97,9 @@ class Binder {
     const PluginInfo* info = find(entity, category, unknown);
     if (!info) return Bound<T>{nullptr, entity.where, {}};
     // A fallback plugin does not know the parameters of the one that was meant.
+    static const ParameterList none;
     const bool meant = info == find_plugin(category, entity.plugin);
-    return bind_as<T>(entity, *info, meant ? entity.params : ParameterList{});
+    return bind_as<T>(entity, *info, meant ? entity.params : none);
   }
 
   /// An option statement, or the default plugin where the file has none.
@@ -118,6 +121,15 @@ class Binder {
     bind_integrator();
   }
 
+  /// Those of the parameters that another plugin understands as well.
+  const ParameterList& keep_only(const ParameterList& params, const std::vector<std::string>& names) {
+    ParameterList& kept = scene_.own_params.emplace_back();
+    for (const Parameter& p : params) {
+      if (std::find(names.begin(), names.end(), p.name) != names.end()) kept.push_back(p);
+    }
+    return kept;
+  }
+
   /// A sampler we do not have is replaced by halton at the same number of samples.
   void bind_sampler() {
     const Entity& entity = description_.sampler;
@@ -126,11 +138,7 @@ class Binder {
       return;
     }
     const PluginInfo* halton = find(entity, "sampler", {Severity::Warning, "halton", "halton is used instead, at the same number of samples"});
-    ParameterList params;
-    for (const Parameter& p : entity.params) {
-      if (p.name == "pixelsamples") params.push_back(p);
-    }
-    scene_.sampler = bind_as<Sampler>(entity, *halton, params);
+    scene_.sampler = bind_as<Sampler>(entity, *halton, keep_only(entity.params, {"pixelsamples"}));
   }
 
   /// Every integrator of pbrt's is rendered as Whitted's, which is said once; maxdepth is kept.
@@ -145,11 +153,8 @@ class Binder {
     diagnostics_.warning(entity.plugin_at, fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"),
                          known ? "the picture is made with whitted: direct light, mirrors and refraction"
                                : "the picture is made with whitted" + did_you_mean(entity.plugin, pbrt));
-    ParameterList params;
-    for (const Parameter& p : entity.params) {
-      if (p.name == "maxdepth" || p.name == "pixelbounds") params.push_back(p);
-    }
-    scene_.integrator = bind_as<Integrator>(entity, *find_plugin("integrator", "whitted"), params);
+    scene_.integrator = bind_as<Integrator>(entity, *find_plugin("integrator", "whitted"),
+                                            keep_only(entity.params, {"maxdepth", "pixelbounds"}));
   }
 
   void bind_textures() {
@@ -198,14 +203,12 @@ class Binder {
   /// pbrt looks for textures first: the shape's, then the material's; then for values in the same order.
   void override_material(const ShapeDescription& shape, const PluginInfo& shape_info,
                          const MaterialDescription& material, const PluginInfo& material_info) {
-    ParameterList merged;
-    bool overrides = false;
-    for (const Parameter& p : shape.params) {
-      if (!material_info.find_param(p.name) || shape_info.find_param(p.name)) continue;
-      overrides = true;
-      merged.push_back(p);
-    }
-    if (!overrides) return;
+    const auto overrides = [&](const Parameter& p) {
+      return material_info.find_param(p.name) && !shape_info.find_param(p.name);
+    };
+    if (std::none_of(shape.params.begin(), shape.params.end(), overrides)) return;
+    ParameterList& merged = scene_.own_params.emplace_back();
+    std::copy_if(shape.params.begin(), shape.params.end(), std::back_inserter(merged), overrides);
     for (const Parameter& p : material.params) {
       const auto same = std::find_if(merged.begin(), merged.end(), [&](const Parameter& o) { return o.name == p.name; });
       if (same == merged.end()) {

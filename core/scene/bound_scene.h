@@ -1,6 +1,7 @@
 // A scene whose statements have become plugins with their parameters bound and checked: cheap, nothing read yet.
 #pragma once
 
+#include <deque>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -39,6 +40,7 @@ struct BoundScene {
   std::vector<Bound<Shape>> shapes;
   /// Index into materials of each shape; beyond the description's for shapes that override parameters.
   std::vector<int> shape_material;
+  std::deque<ParameterList> own_params;  ///< Lists made while binding, kept for the plugins that refer to them.
 };
 
 /// The place of the i-th value of a parameter; from parser/lexer.h.

@@ -90,6 +90,11 @@ class Builder {
     return ctx;
   }
 
+  template <class T>
+  void prepare_option(const Bound<T>& option) {
+    option.plugin->prepare(context(option.where));
+  }
+
   void prepare_sampling() {
     Sampler& sampler = *scene_->bound.sampler.plugin;
     sampler.seed = options_.seed;
@@ -99,6 +104,13 @@ class Builder {
       sampler.set_samples_per_pixel(options_.samples_per_pixel);
     }
     scene_->samples_per_pixel = sampler.samples_per_pixel();
+    prepare_option(scene_->bound.sampler);
+    prepare_option(scene_->bound.filter);
+    prepare_option(scene_->bound.film);
+    prepare_option(scene_->bound.integrator);
+    for (const auto& light : scene_->bound.area_lights) {
+      if (light.plugin) prepare_option(light);
+    }
     scene_->time_start = description().time_start;
     scene_->time_end = description().time_end;
   }

@@ -11,14 +11,15 @@ namespace {
 class PointLight final : public Light {
  public:
   RGB I{1.0f}, scale{1.0f};
-  Point from;  ///< Light space.
+  Point from;  ///< World space, from the origin of light space.
 
   bool is_delta() const override { return true; }
   EffectSet effects() const override { return {Effect::DeltaLight}; }
   bool is_black() const override { return whit::is_black(I * scale); }
 
   bool prepare(const PrepareContext& ctx) override {
-    const Vec3d world = transform_point(light_to_world, from.value);
+    // pbrt-v3 adds "from" after the transform: a rotation or scale at the light does not act on it.
+    const Vec3d world = light_to_world.translation() + from.value;
     position_ = Vec3f((world - ctx.space.origin) * ctx.space.scale);
     to_render_ = static_cast<float>(ctx.space.scale);
     intensity_ = I * scale;
@@ -55,7 +56,8 @@ const Register<PointLight> point{
     "A point that radiates evenly in all directions.",
     param(&PointLight::I, "I", RGB{1.0f}, Unit::Intensity, "Intensity: radiance at distance 1."),
     param(&PointLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of I."),
-    param(&PointLight::from, "from", Point{}, Unit::Length, "Position.")};
+    param(&PointLight::from, "from", Point{}, Unit::Length,
+          "Position, from where the transform takes the origin; not turned or scaled by it (as in pbrt-v3).")};
 
 }  // namespace
 }  // namespace whit

@@ -1,6 +1,6 @@
-// A dielectric boundary, smooth or rough. Smooth: reflection and refraction by Fresnel's equations, as two lobes. Rough:
-// microfacets after Walter et al., Microfacet Models for Refraction through Rough Surfaces, 2007. Where a texture
-// makes both roughnesses 0 the surface is smooth.
+// A dielectric boundary, smooth or rough. Smooth: reflection and refraction by Fresnel's equations, as two
+// lobes. Rough: microfacets after Walter et al., Microfacet Models for Refraction through Rough Surfaces,
+// 2007. Where a texture makes both roughnesses 0 the surface is smooth.
 #include <cmath>
 
 #include "core/plugin/material_inputs.h"

@@ -1,5 +1,5 @@
-// Diffuse reflection: Lambert's, or that of Oren and Nayar (Generalization of Lambert's Reflectance Model, 1994) where
-// sigma is not 0.
+// Diffuse reflection: Lambert's, or that of Oren and Nayar (Generalization of Lambert's Reflectance Model,
+// 1994) where sigma is not 0.
 #include "core/batch/lobe_formulas.h"
 #include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"

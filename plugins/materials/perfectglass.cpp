@@ -1,5 +1,5 @@
-// A smooth dielectric: reflects and refracts by Fresnel's equations, and reflects totally beyond the critical angle. A black
-// Kr or Kt removes only its own lobe.
+// A smooth dielectric: reflects and refracts by Fresnel's equations, and reflects totally beyond the critical
+// angle. A black Kr or Kt removes only its own lobe.
 #include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
 

@@ -5,8 +5,8 @@
 namespace whit {
 namespace {
 
-/// The coat's index inside over that outside. pbrt-v3 has them this way round (1.5 outside), which makes the gloss total
-/// beyond 42 degrees between light and facet; plastics in its scenes are tuned to that look.
+/// The coat's index inside over that outside. pbrt-v3 has them this way round (1.5 outside), which makes the
+/// gloss total beyond 42 degrees between light and facet; plastics in its scenes are tuned to that look.
 constexpr float kCoatEta = 1 / 1.5f;
 
 struct Plastic : Material {

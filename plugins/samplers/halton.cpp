@@ -6,6 +6,7 @@
 // Hash-based Owen Scrambling, JCGT 9(4), 2020.
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/radical_inverse.h"
 #include "core/plugin/registry.h"
@@ -46,9 +47,28 @@ class Halton final : public Sampler {
     }
   }
 
+  /// Film positions come from one sequence over blocks of 128 x 243 pixels: they are evenly spread across the borders
+  /// of pixels too, which filters wider than a pixel see (PBR 3e, section 7.4.1).
   void pixel_offset(const SampleKeys& keys, float* u, float* v) const override {
-    if (!pixel_centre) return get_2d(keys, 0, u, v);
-    for_lanes(keys.n, [=](int i) { u[i] = v[i] = 0.5f; });
+    if (pixel_centre) {
+      for_lanes(keys.n, [=](int i) { u[i] = v[i] = 0.5f; });
+      return;
+    }
+    const auto shift_x = static_cast<int32_t>(mix32(seed) & 0xffffu), shift_y = static_cast<int32_t>(mix32(seed) >> 16);
+    const int digits = base3_digits(128 * (static_cast<uint32_t>(pixel_samples) + 1));
+    const double cells = std::pow(3.0, digits);
+    const auto width = static_cast<float>(1 / cells);
+    for_lanes(keys.n, [=](int i) {
+      const auto x = static_cast<uint32_t>(keys.px[i] + shift_x) & 127u;
+      const auto y = static_cast<uint32_t>((keys.py[i] + shift_y) % 243 + 243) % 243u;
+      const uint32_t x_index = reverse_bits(x) >> 25, y_index = reverse_base3(y, 5);
+      // The first sample that falls into this pixel of the block, by the Chinese remainder theorem:
+      // 243 * 59 = 1 modulo 128, and 128 * 131 = 1 modulo 243.
+      const uint32_t first = (x_index * (243u * 59u) + y_index * (128u * 131u)) % 31104u;
+      u[i] = unit_float(reverse_bits(first / 128u + keys.index[i] * 243u));
+      const float b = static_cast<float>(static_cast<int32_t>(reverse_base3(first / 243u + keys.index[i] * 128u, digits))) * width;
+      v[i] = b < kBelowOne ? b : kBelowOne;
+    });
   }
 
  private:
@@ -73,9 +93,10 @@ class Halton final : public Sampler {
   /// result, so it does not depend on the batch.
   void shuffle(int n, const uint32_t* key, uint32_t* index) const {
     const auto count = static_cast<uint32_t>(pixel_samples);
+    if (count == 1) return;
     const int bits = bits_below(count);
     for_lanes(n, [=](int i) { index[i] = permute_bits(index[i], bits, key[i]); });
-    if (std::has_single_bit(count) && count > 1) return;
+    if (std::has_single_bit(count)) return;
     for (uint32_t open = 1; open != 0;) {
       open = 0;
 #pragma omp simd reduction(| : open)

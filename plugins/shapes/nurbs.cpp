@@ -1,5 +1,5 @@
-// A NURBS surface, diced into 30 x 30 points with exact normals as in pbrt-v3 (evaluation by de Boor's algorithm, 1972).
-// Knots must not decrease and weights must be positive.
+// A NURBS surface, diced into 30 x 30 points with exact normals as in pbrt-v3; evaluated by de Boor's algorithm
+// (1972). Knots must not decrease and weights must be positive.
 
 #include <Imath/ImathVec.h>
 #include <fmt/format.h>

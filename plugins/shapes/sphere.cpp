@@ -145,7 +145,8 @@ struct Sphere final : AnalyticShape {
     const Vec3d o = transform_point(scene_to_object_, ref);
     const Vec3d d = transform_vector(scene_to_object_, cone.direction(u0, u1));
     double t0, t1;
-    if (!AxialQuadric{1, 1, 0, -r_ * r_}.roots(o, d, t0, t1) || !(t0 > 0)) return {cone.center, -cone.w, 0};
+    AxialQuadric{1, 1, 0, -r_ * r_}.roots(o.x, o.y, o.z, d.x, d.y, d.z, t0, t1);
+    if (!(t0 > 0)) return {cone.center, -cone.w, 0};
     const Vec3d p = o + t0 * d;
     // Normals go by the inverse transpose.
     Vec3d n;
@@ -154,15 +155,21 @@ struct Sphere final : AnalyticShape {
     return {transform_point(object_to_scene_, p * (r_ / p.length())), flips_ ? -n : n, cone.pdf()};
   }
 
+  /// The loop of the common case, kept free of branches so that it vectorises.
   void intersect_whole(const ObjectRays& rays) const {
-    const AxialQuadric quadric{1, 1, 0, -r_ * r_};
-    for_lanes(rays.n, [&](int i) {
+    const double *ox = rays.ox, *oy = rays.oy, *oz = rays.oz, *dx = rays.dx, *dy = rays.dy, *dz = rays.dz;
+    const double* t_min = rays.t_min;
+    double* t_out = rays.t;
+    const double minus_r2 = -r_ * r_;
+    for_lanes(rays.n, [=](int i) {
+      const DoubleDouble a = exact_dot(dx[i], dy[i], dz[i], dx[i], dy[i], dz[i]);
+      const DoubleDouble half_b = exact_dot(ox[i], oy[i], oz[i], dx[i], dy[i], dz[i]);
+      const DoubleDouble c = exact_dot(ox[i], oy[i], oz[i], ox[i], oy[i], oz[i]) + DoubleDouble{minus_r2, 0};
       double t0, t1;
-      const bool real =
-          quadric.roots({rays.ox[i], rays.oy[i], rays.oz[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}, t0, t1);
-      const double t = t0 > rays.t_min[i] ? t0 : t1;
-      const bool hit = real & (t > rays.t_min[i]) & (t < rays.t[i]);
-      rays.t[i] = hit ? t : rays.t[i];
+      const bool real = solve_quadratic(a, half_b, c, t0, t1);
+      const double t = t0 > t_min[i] ? t0 : t1;
+      const bool hit = real & (t > t_min[i]) & (t < t_out[i]);
+      t_out[i] = hit ? t : t_out[i];
     });
   }
 

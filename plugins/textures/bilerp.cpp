@@ -1,4 +1,5 @@
-// Four values at the corners of the unit square of texture coordinates, blended bilinearly, and extrapolated beyond.
+// Four values at the corners of the unit square of texture coordinates, blended bilinearly, and extrapolated
+// beyond.
 #include "core/plugin/texture_channels.h"
 #include "core/plugin/texture_mapping.h"
 

@@ -1,5 +1,5 @@
-// Two textures in turn on the squares (or cubes) of a grid of unit size. In two dimensions the pattern is filtered over the
-// footprint by its integral. Source: PBR book, 3rd ed., 10.5.2.
+// Two textures in turn on the squares (or cubes) of a grid of unit size. In two dimensions the pattern is
+// filtered over the footprint by its integral. Source: PBR book, 3rd ed., 10.5.2.
 #include <cmath>
 
 #include "core/base/fastmath.h"
@@ -24,7 +24,8 @@ inline float odd_share(float x, float d) {
   return d > 0 ? clamp_to(share, 0.0f, 1.0f) : odd(std::floor(x));
 }
 
-/// The share of tex2 in the rectangle (s +- ds, t +- dt). Beyond a cell's size pbrt gives up and takes one half.
+/// The share of tex2 in the rectangle (s +- ds, t +- dt). Beyond a cell's size pbrt gives up and takes one
+/// half.
 inline float filtered_share(float s, float t, float ds, float dt) {
   const float edges = std::floor(s + ds) - std::floor(s - ds) + std::floor(t + dt) - std::floor(t - dt);
   const float point = odd(std::floor(s) + std::floor(t));

@@ -1,5 +1,5 @@
-// A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters. The file is decoded when a
-// ray first meets it.
+// A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters. The file is
+// decoded when a ray first meets it.
 #include "core/image/image.h"
 #include "core/image/texture_store.h"
 #include "core/plugin/texture_channels.h"

@@ -1,4 +1,5 @@
-// Texture coordinates as colours: red is the fraction of s, green that of t. For finding out how a surface is mapped.
+// Texture coordinates as colours: red is the fraction of s, green that of t. For finding out how a surface is
+// mapped.
 #include <cmath>
 
 #include "core/plugin/texture_mapping.h"

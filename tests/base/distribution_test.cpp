@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -13,6 +14,12 @@ std::vector<float> cdf_of(const std::vector<double>& weights) {
   std::vector<float> cdf(weights.size() + 1);
   build_cell_cdf(weights, cdf.data());
   return cdf;
+}
+
+GridDistribution grid_of(int columns, int rows, const std::vector<double>& weights) {
+  return GridDistribution(columns, rows, [&](int row, std::span<double> out) {
+    std::copy_n(weights.begin() + row * columns, columns, out.begin());
+  });
 }
 
 TEST(CellCdf, ProportionsAndEnds) {
@@ -51,7 +58,7 @@ TEST(CellCdf, AllBlackIsUniform) {
 
 TEST(GridDistribution, DrawsCellsAsOftenAsItSays) {
   const std::vector<double> weights{1, 2, 0, 4, 0, 0, 0, 0, 3, 0.5, 7, 0.25};
-  const GridDistribution grid(4, 3, weights);
+  const GridDistribution grid = grid_of(4, 3, weights);
   constexpr int kSide = 512;  // a regular grid of numbers: frequencies are exact up to the grid's coarseness
   std::vector<float> u(kSide * kSide), v(kSide * kSide), du(kSide * kSide), dv(kSide * kSide);
   std::vector<int> column(kSide * kSide), row(kSide * kSide), count(12);
@@ -76,7 +83,7 @@ TEST(GridDistribution, DrawsCellsAsOftenAsItSays) {
 }
 
 TEST(GridDistribution, NumbersNextToOne) {
-  const GridDistribution grid(3, 2, std::vector<double>{1, 1, 0, 1, 0, 0});
+  const GridDistribution grid = grid_of(3, 2, {1, 1, 0, 1, 0, 0});
   const float last = 0x1.fffffep-1f;
   int column, row;
   float du, dv;
@@ -92,7 +99,7 @@ TEST(GridDistribution, ABatchIsItsLanesOneByOne) {
   std::uniform_real_distribution<float> uniform(0, 1);
   std::vector<double> weights(64 * 33);
   for (double& w : weights) w = uniform(random);
-  const GridDistribution grid(64, 33, weights);
+  const GridDistribution grid = grid_of(64, 33, weights);
   constexpr int kCount = 331;
   std::vector<float> u(kCount), v(kCount), du(kCount), dv(kCount);
   std::vector<int> column(kCount), row(kCount);

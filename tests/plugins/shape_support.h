@@ -14,7 +14,7 @@ namespace whit::test {
 
 inline Parameter parameter(ParamType type, const char* name) {
   Parameter p;
-  p.type = type, p.name = name;
+  p.type = type, p.name = std::string(name);
   p.where = {0, 100}, p.values_at = {0, 200};
   return p;
 }
@@ -53,8 +53,8 @@ struct Made {
     BindContext ctx;
     ctx.diagnostics = &diagnostics;
     ctx.statement = statement();
-    ctx.statement_name = name;
-    ctx.folder = ".";
+    ctx.statement_name = std::string(name);
+    ctx.folder = std::string(".");
     bind_parameters(*info, *plugin, params, ctx);
     plugin->check(diagnostics, statement());
   }

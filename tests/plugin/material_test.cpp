@@ -1,0 +1,182 @@
+// What every registered material must hold, and what the single ones promise.
+#include "core/plugin/material.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <set>
+
+#include "core/batch/lobe_eval.h"
+#include "core/plugin/registry.h"
+#include "tests/plugin/shading_points.h"
+#include "tests/plugins/make_plugin.h"
+
+namespace whit {
+namespace {
+
+using test::make_plugin;
+using test::ShadingPoints;
+
+std::unique_ptr<Material> make_default(const PluginInfo& info) {
+  std::unique_ptr<Plugin> plugin = info.make();
+  return std::unique_ptr<Material>(dynamic_cast<Material*>(plugin.release()));
+}
+
+/// Everything the renderer asks of a material at points, in one row of floats a point.
+std::vector<float> answers(const Material& material, const ShadingBatch& s, const Vec3Lanes& light) {
+  LobeSet set;
+  material.lobes(s, set);
+  const float* const half = Tex<float>(0.5f)(s);
+  const RGBLanes f = s.arena->rgb(s.n), r = s.arena->rgb(s.n), t = s.arena->rgb(s.n), g = s.arena->rgb(s.n);
+  const Vec3Lanes wr = s.arena->vec3(s.n), wt = s.arena->vec3(s.n), wg = s.arena->vec3(s.n);
+  float* const pdf = s.arena->floats(s.n);
+  eval_lobes(set, s, prepare_frame(set, s), light, f);
+  specular_reflection(set, s, half, wr, r);
+  specular_transmission(set, s, half, wt, t);
+  sample_lobes(set, s, make_frame(s), half, half, half, wg, g, pdf);
+  std::vector<float> out;
+  for (int i = 0; i < s.n; ++i) {
+    for (const RGBLanes& c : {f, r, t, g}) out.insert(out.end(), {c.r[i], c.g[i], c.b[i]});
+    for (const Vec3Lanes& v : {wr, wt, wg}) out.insert(out.end(), {v.x[i], v.y[i], v.z[i]});
+    out.push_back(pdf[i]);
+  }
+  return out;
+}
+
+TEST(EveryMaterial, BatchOfNEqualsNBatchesOfOne) {
+  const auto materials = list_plugins("material");
+  EXPECT_GE(materials.size(), 6u);
+  for (const PluginInfo* info : materials) {
+    const auto material = make_default(*info);
+    ASSERT_TRUE(material) << info->name;
+    ShadingPoints points(61);
+    points.randomise(1);
+    ShadingPoints lights(61);
+    lights.randomise(2);
+    const std::vector<float> together = answers(*material, points.s, lights.s.wo);
+    std::vector<float> alone;
+    for (int i = 0; i < points.s.n; ++i) {
+      const auto one = answers(*material, points.s.range(i, 1), lights.s.wo.from(i));
+      alone.insert(alone.end(), one.begin(), one.end());
+    }
+    ASSERT_EQ(together.size(), alone.size());
+    EXPECT_EQ(std::memcmp(together.data(), alone.data(), together.size() * sizeof(float)), 0) << info->name;
+    for (const float v : together) ASSERT_TRUE(std::isfinite(v)) << info->name;
+  }
+}
+
+TEST(EveryMaterial, ReflectsAtMostWhatArrives) {
+  // The mean over samples of f / pdf, plus the weights of mirror and refraction (radiance scaling taken back).
+  for (const PluginInfo* info : list_plugins("material")) {
+    const auto material = make_default(*info);
+    const int n = 4096;
+    ShadingPoints points(n);
+    LobeSet set;
+    material->lobes(points.s, set);
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    std::vector<float> lobe_u(n), u(n), v(n), pdf(n);
+    for (int i = 0; i < n; ++i) {
+      lobe_u[i] = (static_cast<float>(i) + 0.5f) / static_cast<float>(n);
+      u[i] = uniform(random), v[i] = uniform(random);
+    }
+    const Vec3Lanes wi = points.arena.vec3(n);
+    const RGBLanes f = points.arena.rgb(n);
+    sample_lobes(set, points.s, make_frame(points.s), lobe_u.data(), u.data(), v.data(), wi, f, pdf.data());
+    double sum = 0;
+    for (int i = 0; i < n; ++i) sum += pdf[i] > 0 ? f.g[i] / pdf[i] : 0.0f;
+    sum /= n;
+    specular_reflection(set, points.s, lobe_u.data(), wi, f);
+    sum += f.g[0];
+    specular_transmission(set, points.s, lobe_u.data(), wi, f);
+    sum += f.g[0] * (set.eta ? set.eta[0] * set.eta[0] : 1.0f);
+    EXPECT_LE(sum, 1.01) << info->name;
+  }
+}
+
+TEST(EveryMaterial, IsDocumentedAndItsDefaultsAreInRange) {
+  for (const PluginInfo* info : list_plugins("material")) {
+    EXPECT_FALSE(info->doc.empty()) << info->name;
+    std::set<std::string> names;
+    for (const ParamSpec& p : info->params) {
+      EXPECT_FALSE(p.doc.empty()) << info->name << ' ' << p.name;
+      EXPECT_TRUE(names.insert(p.name).second) << info->name << " declares " << p.name << " twice";
+    }
+  }
+}
+
+LobeSet lobes_of(const Material& material, const ShadingBatch& s) {
+  LobeSet set;
+  material.lobes(s, set);
+  return set;
+}
+
+TEST(Matte, IsLambertianUntilSigma) {
+  ShadingPoints points(1);
+  const auto plain = make_plugin<Material>("material", "matte");
+  EXPECT_EQ(lobes_of(*plain.plugin, points.s).lobes[0].type, LobeType::LambertReflection);
+  EXPECT_EQ(lobes_of(*plain.plugin, points.s).lobes[0].weight[0], RGB(0.5f));
+  const auto rough = make_plugin<Material>("material", "matte", {test::floats("sigma", {200})});
+  const LobeSet set = lobes_of(*rough.plugin, points.s);
+  EXPECT_EQ(set.lobes[0].type, LobeType::OrenNayar);
+  // Clamped to 90 degrees: s2 = 2.467401; A = 1 - s2 / (2 (s2 + 0.33)) = 0.558983, B = 0.45 s2 / (s2 + 0.09) = 0.434164.
+  EXPECT_NEAR(set.lobes[0].a[0], 0.558983, 1e-6);
+  EXPECT_NEAR(set.lobes[0].b[0], 0.434164, 1e-6);
+}
+
+TEST(Materials, NegativeReflectancesCountAsBlack) {
+  ShadingPoints points(1);
+  const auto m = make_plugin<Material>("material", "mirror", {test::rgb("Kr", -1, 0.5, 2)});
+  EXPECT_EQ(lobes_of(*m.plugin, points.s).lobes[0].weight[0], RGB(0, 0.5f, 2));
+}
+
+TEST(Glass, LobesAndEffectsFollowItsParameters) {
+  ShadingPoints points(1);
+  const auto smooth =
+      make_plugin<Material>("material", "glass", {test::floats("eta", {1.7}), test::floats("index", {1.2})});
+  const LobeSet set = lobes_of(*smooth.plugin, points.s);
+  EXPECT_EQ(set.count, 2);
+  EXPECT_EQ(set.eta[0], 1.7f) << "eta overrides index";
+  EXPECT_TRUE(smooth->effects().has(Effect::Mirror) && smooth->effects().has(Effect::Refraction));
+  EXPECT_FALSE(smooth->effects().has(Effect::Glossy));
+
+  const auto rough = make_plugin<Material>("material", "glass", {test::floats("uroughness", {0.2})});
+  const LobeSet r = lobes_of(*rough.plugin, points.s);
+  EXPECT_EQ(r.lobes[0].type, LobeType::MicrofacetReflection);
+  EXPECT_EQ(r.lobes[1].type, LobeType::MicrofacetTransmission);
+  EXPECT_TRUE(needs_frame(r));
+  EXPECT_TRUE(rough->effects().has(Effect::Glossy));
+  EXPECT_FALSE(rough->effects().has(Effect::Mirror));
+
+  const auto clear = make_plugin<Material>("material", "glass", {test::rgb("Kr", 0, 0, 0)});
+  EXPECT_EQ(lobes_of(*clear.plugin, points.s).count, 1);
+  EXPECT_FALSE(clear->effects().has(Effect::Mirror));
+
+  EXPECT_TRUE(make_plugin<Material>("material", "glass", {test::floats("eta", {0})}).diagnostics.has_errors());
+}
+
+TEST(PerfectGlass, BlackReflectanceRemovesOnlyItsLobe) {
+  ShadingPoints points(1);
+  const auto m = make_plugin<Material>("material", "perfectglass", {test::rgb("Kr", 0, 0, 0)});
+  const LobeSet set = lobes_of(*m.plugin, points.s);
+  EXPECT_EQ(set.count, 1);
+  EXPECT_EQ(set.lobes[0].type, LobeType::SpecularTransmission);
+  EXPECT_EQ(lobes_of(*make_plugin<Material>("material", "perfectglass").plugin, points.s).count, 2);
+}
+
+TEST(Plastic, RoughnessIsMappedUnlessToldOtherwise) {
+  ShadingPoints points(1);
+  EXPECT_NEAR(lobes_of(*make_plugin<Material>("material", "plastic").plugin, points.s).lobes[1].a[0], 0.461757, 1e-5);
+  const auto raw = make_plugin<Material>("material", "plastic", {test::boolean("remaproughness", false)});
+  EXPECT_FLOAT_EQ(lobes_of(*raw.plugin, points.s).lobes[1].a[0], 0.1f);
+}
+
+TEST(None, IsAnInterfaceUnderBothNames) {
+  EXPECT_EQ(find_plugin("material", ""), find_plugin("material", "none"));
+  const auto m = make_plugin<Material>("material", "none");
+  EXPECT_TRUE(m->is_interface());
+  EXPECT_TRUE(m->effects().has(Effect::Interface));
+}
+
+}  // namespace
+}  // namespace whit

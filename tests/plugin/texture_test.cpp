@@ -1,0 +1,293 @@
+// Mappings, the textures made of them, and bump mapping.
+#include "core/plugin/texture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "core/image/texture_store.h"
+#include "core/image/write.h"
+#include "core/plugin/bump.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/texture_mapping.h"
+#include "tests/plugin/shading_points.h"
+#include "tests/plugins/make_plugin.h"
+
+namespace whit {
+namespace {
+
+using test::make_plugin;
+using test::ShadingPoints;
+
+/// A bound and prepared float texture.
+test::Made<Texture<float>> make_texture(const char* name, ParameterList parameters, const Mat4d& to_world = Mat4d(),
+                                        const RenderSpace& space = {}) {
+  auto made = make_plugin<Texture<float>>("float texture", name, std::move(parameters));
+  EXPECT_TRUE(made.silent()) << name;
+  made->texture_to_world = to_world;
+  PrepareContext ctx;
+  ctx.space = space;
+  EXPECT_TRUE(made.prepare(ctx));
+  return made;
+}
+
+std::vector<float> values(const Texture<float>& texture, const ShadingBatch& s) {
+  std::vector<float> out(s.n);
+  texture.evaluate(s, out.data());
+  return out;
+}
+
+Parameter string_choice(const char* name, const char* value) { return test::text(name, value); }
+
+TEST(Mapping, UvScalesAndShifts) {
+  // uv as colours: red = frac(2 u + 0.25), green = frac(v).
+  auto uv = make_plugin<Texture<RGB>>("spectrum texture", "uv",
+                                      {test::floats("uscale", {2}), test::floats("udelta", {0.25})});
+  ASSERT_TRUE(uv.silent());
+  uv.prepare();
+  ShadingPoints points(1);
+  points.set_flat(0, 0.5f, -0.25f);
+  const RGBLanes out = points.arena.rgb(1);
+  uv->evaluate(points.s, out);
+  EXPECT_EQ(out[0], RGB(0.25f, 0.75f, 0));
+}
+
+/// What the bilerp texture with v01 = 0, v10 = v11 = 1 gives is s; with v01 = v11 = 1, t.
+std::vector<float> mapped(const char* which, const char* mapping, ShadingPoints& points, const Mat4d& to_world = {},
+                          const RenderSpace& space = {}, ParameterList more = {}) {
+  const bool s = which[0] == 's';
+  more.push_back(test::floats("v01", {s ? 0.0 : 1.0}));
+  more.push_back(test::floats("v10", {s ? 1.0 : 0.0}));
+  more.push_back(string_choice("mapping", mapping));
+  return values(*make_texture("bilerp", std::move(more), to_world, space).plugin, points.s);
+}
+
+TEST(Mapping, SphericalIsThetaAndPhi) {
+  ShadingPoints points(3);
+  points.s.p.set(0, {2, 0, 0}), points.s.p.set(1, {0, -3, 0}), points.s.p.set(2, {0, 0, -1});
+  const auto s = mapped("s", "spherical", points), t = mapped("t", "spherical", points);
+  EXPECT_NEAR(s[0], 0.5, 1e-6);
+  EXPECT_NEAR(s[1], 0.5, 1e-6);
+  EXPECT_NEAR(s[2], 1, 1e-6);
+  EXPECT_NEAR(t[0], 0, 1e-6);
+  EXPECT_NEAR(t[1], 0.75, 1e-6);
+}
+
+TEST(Mapping, CylindricalTakesTheNormalisedHeight) {
+  ShadingPoints points(2);
+  points.s.p.set(0, {3, 0, 4}), points.s.p.set(1, {0, 1, 0});
+  const auto s = mapped("s", "cylindrical", points), t = mapped("t", "cylindrical", points);
+  EXPECT_NEAR(s[0], 0.5, 1e-6);
+  EXPECT_NEAR(s[1], 0.75, 1e-6);
+  EXPECT_NEAR(t[0], 0.8, 1e-6);
+  EXPECT_NEAR(t[1], 0, 1e-6);
+}
+
+TEST(Mapping, PlanarIgnoresTheCtmButNotTheShift) {
+  ShadingPoints points(1);
+  points.s.p.set(0, {1, 2, 3});
+  Mat4d moved;
+  moved.setTranslation(Vec3d(100, 0, 0));
+  const ParameterList more = {test::parameter(ParamType::Vector3, "v1", std::vector<double>{0, 0, 0.5}),
+                              test::floats("udelta", {0.25})};
+  EXPECT_NEAR(mapped("s", "planar", points, moved, {}, more)[0], 0.5 * 3 + 0.25, 1e-6);
+  EXPECT_NEAR(mapped("t", "planar", points, moved, {}, more)[0], 2, 1e-6);
+}
+
+TEST(Mapping, RenderSpaceChangesNothing) {
+  // A texture at a sphere's place, a million units away: the same as at the origin, to float.
+  ShadingPoints here(50), there(50);
+  here.randomise(4), there.randomise(4);
+  const RenderSpace space{{1e6, -2e6, 3e6}, 0.25};
+  Mat4d to_world;
+  to_world.setTranslation(Vec3d(1e6, -2e6, 3e6));
+  for (int i = 0; i < 50; ++i) there.s.p.set(i, here.s.p[i] * 0.25f);
+  for (const char* mapping : {"spherical", "cylindrical"}) {
+    const auto a = mapped("s", mapping, here), b = mapped("s", mapping, there, to_world, space);
+    for (int i = 0; i < 50; ++i) EXPECT_NEAR(a[i], b[i], 1e-6) << mapping;
+  }
+}
+
+TEST(Mapping, DerivativesAreThoseOfTheMapping) {
+  // Against central differences of the mapping itself, at a point away from the seam.
+  ShadingPoints points(1);
+  points.s.p.set(0, {1, 2, 0.5f});
+  points.s.dpdx.set(0, {0.01f, 0, 0}), points.s.dpdy.set(0, {0, 0.01f, 0.02f});
+  TextureMapping2D m;
+  for (const auto kind : {TextureMapping2D::Spherical, TextureMapping2D::Cylindrical}) {
+    m.kind = kind;
+    const MappedPoints at = m.map(points.s);
+    ShadingPoints moved(2);
+    moved.s.p.set(0, points.s.p[0] + points.s.dpdy[0] * 0.5f),
+        moved.s.p.set(1, points.s.p[0] - points.s.dpdy[0] * 0.5f);
+    const MappedPoints ends = m.map(moved.s);
+    EXPECT_NEAR(at.dsdy[0], ends.s[0] - ends.s[1], 2e-4);
+    EXPECT_NEAR(at.dtdy[0], ends.t[0] - ends.t[1], 2e-4);
+  }
+  ShadingPoints without(1, /*footprint=*/false);
+  EXPECT_EQ(m.map(without.s).dsdx, nullptr);
+}
+
+TEST(Checkerboard, PointSampled) {
+  ShadingPoints points(4, /*footprint=*/false);
+  points.set_flat(0, 0.5f, 0.5f), points.set_flat(1, 1.5f, 0.5f), points.set_flat(2, -0.5f, 0.5f),
+      points.set_flat(3, -0.5f, -0.5f);
+  const auto v = values(*make_texture("checkerboard", {}).plugin, points.s);
+  EXPECT_EQ(v, (std::vector<float>{1, 0, 0, 1}));
+}
+
+TEST(Checkerboard, FiltersByItsIntegral) {
+  ShadingPoints points(5);
+  // Half widths 0.25 around s = 1: half odd in s, all even in t.
+  points.set_flat(0, 1, 0.5f), points.set_footprint(0, 0.25f, 0, 0, 0.1f);
+  // Around s = 1.1: [0.85, 1.35] has 0.35 of 0.5 odd.
+  points.set_flat(1, 1.1f, 0.5f), points.set_footprint(1, 0.25f, 0, 0, 0.1f);
+  // Wider than a cell: one half.
+  points.set_flat(2, 1.1f, 0.5f), points.set_footprint(2, 1.25f, 0, 0, 0.1f);
+  // Within a cell.
+  points.set_flat(3, 0.5f, 0.5f), points.set_footprint(3, 0.25f, 0, 0, 0.25f);
+  // Across an edge in t only, with no width in s, in an odd column: pbrt divides 0 by 0 here.
+  points.set_flat(4, 1.5f, 1), points.set_footprint(4, 0, 0.25f, 0, 0.1f);
+  const auto v = values(*make_texture("checkerboard", {}).plugin, points.s);
+  EXPECT_NEAR(v[0], 0.5, 1e-6);
+  EXPECT_NEAR(v[1], 1 - 0.7, 1e-6);
+  EXPECT_NEAR(v[2], 0.5, 1e-6);
+  EXPECT_EQ(v[3], 1);
+  EXPECT_NEAR(v[4], 0.5, 1e-6);
+}
+
+TEST(Checkerboard, InThreeDimensionsTheCtmItselfIsApplied) {
+  // pbrt-v3's IdentityMapping3D takes texture-to-world for world-to-texture: Scale 2 makes cells of one half.
+  ShadingPoints points(2);
+  points.s.p.set(0, {0.6f, 0.1f, 0.1f}), points.s.p.set(1, {0.4f, 0.1f, 0.1f});
+  Mat4d twice;
+  twice.setScale(2.0);
+  const auto v = values(*make_texture("checkerboard", {test::integer("dimension", 3)}, twice).plugin, points.s);
+  EXPECT_EQ(v, (std::vector<float>{0, 1}));
+}
+
+TEST(Textures, FoldWhenConstant) {
+  const auto constant = [](const char* name, ParameterList list) {
+    return make_plugin<Texture<float>>("float texture", name, std::move(list))->constant();
+  };
+  EXPECT_EQ(constant("constant", {test::floats("value", {3})}), 3.0f);
+  EXPECT_EQ(constant("scale", {test::floats("tex1", {3}), test::floats("tex2", {2})}), 6.0f);
+  EXPECT_EQ(constant("mix", {test::floats("tex1", {3}), test::floats("tex2", {5}), test::floats("amount", {0.25})}),
+            3.5f);
+  EXPECT_EQ(constant("checkerboard", {}), std::nullopt);
+  EXPECT_EQ(constant("checkerboard", {test::floats("tex2", {1})}), 1.0f);
+  EXPECT_EQ(constant("bilerp", {}), std::nullopt);
+  EXPECT_EQ(constant("bilerp", {test::floats("v01", {0}), test::floats("v11", {0})}), 0.0f);
+}
+
+TEST(Textures, FilteringIsCalledForOnlyWhereItChangesTheResult) {
+  const auto filters = [](ParameterList list) {
+    return make_plugin<Texture<float>>("float texture", "checkerboard", std::move(list))
+        ->effects()
+        .has(Effect::TextureFiltering);
+  };
+  EXPECT_TRUE(filters({}));
+  EXPECT_FALSE(filters({string_choice("aamode", "none")}));
+  EXPECT_FALSE(filters({test::integer("dimension", 3)}));
+}
+
+TEST(Textures, ImagemapNeedsItsFile) {
+  EXPECT_TRUE(make_plugin<Texture<RGB>>("spectrum texture", "imagemap").diagnostics.has_errors());
+  const auto missing =
+      make_plugin<Texture<RGB>>("spectrum texture", "imagemap", {test::text("filename", "/missing.png")});
+  ASSERT_TRUE(missing.diagnostics.has_errors());
+  EXPECT_EQ(missing.diagnostics.all()[0].message, "cannot open /missing.png");
+}
+
+TEST(Textures, ImagemapIsReadWhenARayMeetsIt) {
+  // Two by two texels, top row first: the bottom row is t = 0. A lookup at a texel's centre gives the texel.
+  const std::string path = ::testing::TempDir() + "whit_imagemap_test.pfm";
+  const std::vector<float> rgb = {3, 3, 3, 4, 4, 4, 1, 1, 1, 2, 2, 2};
+  OutputImage picture;
+  picture.width = picture.height = 2, picture.rgb = rgb;
+  ASSERT_TRUE(write_image(path, picture).ok());
+  auto map = make_plugin<Texture<float>>("float texture", "imagemap",
+                                         {test::text("filename", path), test::floats("scale", {10})});
+  ASSERT_TRUE(map.silent());
+  TextureStore store;
+  PrepareContext ctx;
+  ctx.textures = &store;
+  ASSERT_TRUE(map.prepare(ctx));
+  EXPECT_EQ(store.statistics().decodes, 0);
+  ShadingPoints points(4, /*footprint=*/false);
+  for (int i = 0; i < 4; ++i) points.set_flat(i, i % 2 == 0 ? 0.25f : 0.75f, i < 2 ? 0.25f : 0.75f);
+  const auto v = values(*map.plugin, points.s);
+  EXPECT_EQ(store.statistics().decodes, 1);
+  for (int i = 0; i < 4; ++i) EXPECT_NEAR(v[i], 10 * (i + 1), 1e-3) << i;
+  EXPECT_TRUE(map->effects().has(Effect::TextureFiltering));
+}
+
+TEST(EveryTexture, BatchOfNEqualsNBatchesOfOne) {
+  for (const PluginInfo* info : list_plugins("float texture")) {
+    if (info->name == "imagemap") continue;  // needs a file; tests/image covers its lookups
+    for (const char* mapping : {"uv", "spherical", "cylindrical", "planar"}) {
+      ParameterList list;
+      if (info->find_param("mapping")) list.push_back(string_choice("mapping", mapping));
+      const auto texture = make_texture(info->name.c_str(), list);
+      ShadingPoints points(61);
+      points.randomise(1);
+      const auto together = values(*texture.plugin, points.s);
+      std::vector<float> alone;
+      for (int i = 0; i < points.s.n; ++i) alone.push_back(values(*texture.plugin, points.s.range(i, 1))[0]);
+      EXPECT_EQ(std::memcmp(together.data(), alone.data(), together.size() * sizeof(float)), 0) << info->name;
+    }
+  }
+}
+
+/// A displacement d = slope . p in scene units.
+class Slope : public Texture<float> {
+ public:
+  Slope(Vec3f slope, float scale) : slope_(slope * (1 / scale)) {}
+  void evaluate(const ShadingBatch& s, float* const& out) const override {
+    for (int i = 0; i < s.n; ++i) out[i] = dot(slope_, s.p[i]);
+  }
+
+ private:
+  Vec3f slope_;
+};
+
+TEST(Bump, TiltsTheNormalByTheSlope) {
+  // z = 0.5 x: the normal is (-0.5, 0, 1) normalised, whatever the scale of render space, with and without footprints.
+  for (const float scale : {1.0f, 0.125f, 64.0f}) {
+    for (const bool footprint : {true, false}) {
+      ShadingPoints points(1, footprint);
+      points.set_footprint(0, 0.01f, 0.01f, 0, 0);
+      apply_bump(Tex<float>(std::make_shared<Slope>(Vec3f(0.5f, 0, 0), scale)), scale, points.s);
+      const Vec3f expected = normalize(Vec3f(-0.5f, 0, 1));
+      EXPECT_NEAR(length(points.s.ns[0] - expected), 0, 1e-3) << scale;
+      EXPECT_NEAR(points.s.dpdu.z[0], 0.5, 1e-3);
+      EXPECT_NEAR(points.s.dpdv.z[0], 0, 1e-3);
+    }
+  }
+}
+
+TEST(Bump, RaisesACurvedSurfaceByItsDisplacement) {
+  // A sphere of radius 1 with n = p, dn/du = dp/du, raised by d = 0.25: its tangents grow by a quarter.
+  ShadingPoints points(1);
+  points.s.p.set(0, {0, 0, 1}), points.s.dndu.set(0, {1, 0, 0}), points.s.dndv.set(0, {0, 1, 0});
+  class Flat : public Texture<float> {
+   public:
+    void evaluate(const ShadingBatch& s, float* const& out) const override {
+      for (int i = 0; i < s.n; ++i) out[i] = 0.25f;
+    }
+  };
+  apply_bump(Tex<float>(std::make_shared<Flat>()), 1, points.s);
+  EXPECT_NEAR(points.s.dpdu.x[0], 1.25, 1e-6);
+  EXPECT_EQ(points.s.ns[0], Vec3f(0, 0, 1));
+}
+
+TEST(Bump, StaysOnTheSideOfTheGeometricNormal) {
+  ShadingPoints points(1);
+  points.s.ng.set(0, {0, 0, -1}), points.s.ns.set(0, {0, 0, -1});
+  apply_bump(Tex<float>(std::make_shared<Slope>(Vec3f(0.5f, 0, 0), 1.0f)), 1, points.s);
+  // The displacement goes along ns = -z, so that z = -0.5 x, seen from below.
+  EXPECT_NEAR(length(points.s.ns[0] - normalize(Vec3f(-0.5f, 0, -1))), 0, 1e-3);
+}
+
+}  // namespace
+}  // namespace whit
