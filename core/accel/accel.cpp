@@ -54,9 +54,7 @@ struct ObjectPacket {
       lane[n++] = static_cast<int>(i);
     }
   }
-  void intersect(const AnalyticShape& shape) {
-    shape.intersect({n, ox, oy, oz, dx, dy, dz, t_min, t});
-  }
+  void intersect(const AnalyticShape& shape) { shape.intersect({n, ox, oy, oz, dx, dy, dz, t_min, t}); }
 };
 
 /// Finds each lane's nearest hit that the alpha test leaves standing, and hands it to accept(lane, t).
@@ -226,10 +224,10 @@ int Accel::add_group() {
 
 void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha) {
   RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions, 0,
-                             3 * sizeof(float), mesh.vertex_count);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0,
-                             3 * sizeof(uint32_t), mesh.triangle_count);
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions, 0, 3 * sizeof(float),
+                             mesh.vertex_count);
+  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0, 3 * sizeof(uint32_t),
+                             mesh.triangle_count);
   impl_->set_alpha(g, alpha);
   impl_->attach(group, g, shape);
 }
@@ -242,11 +240,11 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points, 0,
                              4 * sizeof(float), points);
   if (curves.ribbon) {
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, curves.normals, 0,
-                               3 * sizeof(float), points);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, curves.normals, 0, 3 * sizeof(float),
+                               points);
   }
-  auto* index = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT,
-                                                               sizeof(uint32_t), curves.segment_count));
+  auto* index = static_cast<uint32_t*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), curves.segment_count));
   for (size_t i = 0; i < curves.segment_count; ++i) index[i] = static_cast<uint32_t>(4 * i);
   impl_->set_alpha(g, alpha);
   impl_->attach(group, g, shape);
@@ -272,8 +270,7 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcCommitGeometry(g);
   // Instances are numbered after the world's own shapes, which are all there when the first instance comes.
   const int index = static_cast<int>(impl_->instance_group.size());
-  rtcAttachGeometryByID(impl_->group(kWorld).scene, g,
-                        static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
+  rtcAttachGeometryByID(impl_->group(kWorld).scene, g, static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
   return index;

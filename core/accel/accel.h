@@ -24,10 +24,10 @@ struct RayLanes {
 
 /// The nearest hits of n rays.
 struct HitLanes {
-  float* t = nullptr;           ///< Distance.
-  int32_t* shape = nullptr;     ///< Index given to add_*(), -1 for a miss.
-  uint32_t* prim = nullptr;     ///< Triangle or curve segment within the shape.
-  int32_t* instance = nullptr;  ///< Index of the instance, -1 for world geometry.
+  float* t = nullptr;                ///< Distance.
+  int32_t* shape = nullptr;          ///< Index given to add_*(), -1 for a miss.
+  uint32_t* prim = nullptr;          ///< Triangle or curve segment within the shape.
+  int32_t* instance = nullptr;       ///< Index of the instance, -1 for world geometry.
   float *u = nullptr, *v = nullptr;  ///< Barycentric weights of vertices 1 and 2; along and across a curve.
 };
 
@@ -51,8 +51,8 @@ struct MeshView {
 struct CurveView {
   const float* control_points = nullptr;
   size_t segment_count = 0;
-  bool ribbon = false;            ///< Turned by normals instead of facing the ray.
-  const float* normals = nullptr; ///< Ribbon: 4 x 3 per segment.
+  bool ribbon = false;             ///< Turned by normals instead of facing the ray.
+  const float* normals = nullptr;  ///< Ribbon: 4 x 3 per segment.
 };
 
 /// Affine 3x4 matrices, column-major as Embree's FLOAT3X4_COLUMN_MAJOR: x axis, y axis, z axis, translation.

@@ -33,8 +33,7 @@ class EmbreeQuery {
 #else
   explicit EmbreeQuery(bool coherent) {
     rtcInitIntersectContext(&context_);
-    context_.flags =
-        coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
   void intersect16(const int* valid, RTCScene scene, RTCRayHit16& packet) {
     rtcIntersect16(valid, scene, &context_, &packet);

@@ -13,7 +13,20 @@ namespace whit {
 
 /// The parameter types of pbrt-v3 (aliases already resolved: color is Rgb, point is Point3, ...).
 enum class ParamType : uint8_t {
-  Integer, Float, Bool, String, Point2, Point3, Vector2, Vector3, Normal3, Rgb, Xyz, Blackbody, Spectrum, Texture
+  Integer,
+  Float,
+  Bool,
+  String,
+  Point2,
+  Point3,
+  Vector2,
+  Vector3,
+  Normal3,
+  Rgb,
+  Xyz,
+  Blackbody,
+  Spectrum,
+  Texture
 };
 
 /// The name of a type as a scene file spells it: "integer", "float", ..., "rgb", "texture".

@@ -37,10 +37,10 @@ constexpr bool is_transmission(LobeType t) {
 struct Lobe {
   LobeType type = LobeType::LambertReflection;
   FresnelType fresnel = FresnelType::One;
-  RGBLanes weight;              ///< Reflectance or transmittance scale, >= 0.
-  const float* a = nullptr;     ///< First shape parameter, see LobeType.
-  const float* b = nullptr;     ///< Second shape parameter.
-  const float* eta = nullptr;   ///< Relative index of refraction, inside over outside.
+  RGBLanes weight;             ///< Reflectance or transmittance scale, >= 0.
+  const float* a = nullptr;    ///< First shape parameter, see LobeType.
+  const float* b = nullptr;    ///< Second shape parameter.
+  const float* eta = nullptr;  ///< Relative index of refraction, inside over outside.
 };
 
 /// The lobes of one run of points of one material.
@@ -49,7 +49,9 @@ struct LobeSet {
   int count = 0;
   Lobe lobes[kMax];
   const float* eta = nullptr;  ///< The BSDF's relative index for ray differentials; null means 1.
-  void add(const Lobe& lobe) { if (count < kMax) lobes[count++] = lobe; }
+  void add(const Lobe& lobe) {
+    if (count < kMax) lobes[count++] = lobe;
+  }
 };
 
 }  // namespace whit

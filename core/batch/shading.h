@@ -10,14 +10,14 @@ namespace whit {
 /// scaled world space, see core/base/render_space.h); normals are unit vectors.
 struct ShadingBatch {
   int n = 0;
-  Arena* arena = nullptr;    ///< Scratch of the worker that shades this batch.
-  Vec3Lanes p;               ///< Point on the surface.
-  Vec3Lanes p_error;         ///< Bound on the absolute error of p, per component, >= 0.
-  Vec3Lanes wo;              ///< Unit direction towards where the ray came from.
-  Vec3Lanes ng;              ///< Geometric normal, oriented by pbrt's rule (ReverseOrientation XOR handedness).
-  Vec3Lanes ns;              ///< Shading normal, in the hemisphere of ng.
-  Vec3Lanes dpdu, dpdv;      ///< Shading partial derivatives of p (pbrt's shading.dpdu, shading.dpdv).
-  Vec3Lanes dndu, dndv;      ///< Shading normal derivatives; null unless differentials or bumps are live.
+  Arena* arena = nullptr;            ///< Scratch of the worker that shades this batch.
+  Vec3Lanes p;                       ///< Point on the surface.
+  Vec3Lanes p_error;                 ///< Bound on the absolute error of p, per component, >= 0.
+  Vec3Lanes wo;                      ///< Unit direction towards where the ray came from.
+  Vec3Lanes ng;                      ///< Geometric normal, oriented by pbrt's rule (ReverseOrientation XOR handedness).
+  Vec3Lanes ns;                      ///< Shading normal, in the hemisphere of ng.
+  Vec3Lanes dpdu, dpdv;              ///< Shading partial derivatives of p (pbrt's shading.dpdu, shading.dpdv).
+  Vec3Lanes dndu, dndv;              ///< Shading normal derivatives; null unless differentials or bumps are live.
   float *u = nullptr, *v = nullptr;  ///< Surface parameters.
   /// Screen-space derivatives of (u, v) and p, over one sample's footprint; null when no effect needs them.
   float *dudx = nullptr, *dvdx = nullptr, *dudy = nullptr, *dvdy = nullptr;

@@ -10,12 +10,13 @@ namespace whit {
 struct CameraRays {
   int n = 0;
   // In.
-  const float *film_x = nullptr, *film_y = nullptr;  ///< Continuous raster coordinates, pixel (i,j) covers [i,i+1)x[j,j+1).
+  const float *film_x = nullptr,
+              *film_y = nullptr;  ///< Continuous raster coordinates, pixel (i,j) covers [i,i+1)x[j,j+1).
   const float *lens_u = nullptr, *lens_v = nullptr;  ///< In [0,1); null when the camera needs no lens.
   // Out.
-  Vec3Lanes o;               ///< Origin, in scene units.
-  Vec3Lanes d;               ///< Unit direction.
-  float* weight = nullptr;   ///< Multiplies the radiance; 0 for a ray that does not reach the film.
+  Vec3Lanes o;              ///< Origin, in scene units.
+  Vec3Lanes d;              ///< Unit direction.
+  float* weight = nullptr;  ///< Multiplies the radiance; 0 for a ray that does not reach the film.
   /// Rays one pixel further in x and y, null when not wanted.
   Vec3Lanes rx_o, rx_d, ry_o, ry_d;
 };

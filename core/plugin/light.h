@@ -12,13 +12,13 @@ namespace whit {
 struct LightSamples {
   int n = 0;
   // In.
-  Vec3Lanes p;                   ///< Reference points.
+  Vec3Lanes p;                             ///< Reference points.
   const float *u = nullptr, *v = nullptr;  ///< Uniform numbers in [0,1); null for a delta light.
   // Out.
-  Vec3Lanes wi;                  ///< Unit direction from p towards the light.
-  float* distance = nullptr;     ///< Along wi to the sampled point, shortened so that it stays in front of the
-                                 ///< light's own surface; infinity for lights at infinity.
-  RGBLanes radiance;             ///< Incident radiance divided by pdf; 0 where the light does not reach p.
+  Vec3Lanes wi;               ///< Unit direction from p towards the light.
+  float* distance = nullptr;  ///< Along wi to the sampled point, shortened so that it stays in front of the
+                              ///< light's own surface; infinity for lights at infinity.
+  RGBLanes radiance;          ///< Incident radiance divided by pdf; 0 where the light does not reach p.
 };
 
 class Light : public Plugin {

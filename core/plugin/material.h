@@ -21,7 +21,8 @@ class Material : public Plugin {
 
 /// The bump map parameter, the same for every material that has one.
 inline auto bumpmap_param() {
-  return param(&Material::bump, "bumpmap", 0.0f, Unit::Length, "Displacement along the normal that tilts the shading normal.");
+  return param(&Material::bump, "bumpmap", 0.0f, Unit::Length,
+               "Displacement along the normal that tilts the shading normal.");
 }
 
 /// Clamps colours from below at 0, in place, and returns them: pbrt clamps reflectances only there.

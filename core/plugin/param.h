@@ -62,7 +62,7 @@ struct Choice {
 template <class T>
 struct List {
   std::span<const T> values;
-  SourcePos where;       ///< Of the values.
+  SourcePos where;  ///< Of the values.
   bool given = false;
   size_t size() const { return values.size(); }
 };
@@ -78,9 +78,9 @@ struct UvList : List<double> {};
 /// What binding needs to know of the scene around a statement.
 struct BindContext {
   Diagnostics* diagnostics = nullptr;
-  SourcePos statement;                         ///< The directive being bound.
-  std::string statement_name;                  ///< "sphere", for messages.
-  std::string folder;                          ///< Of the main scene file; relative paths start here.
+  SourcePos statement;         ///< The directive being bound.
+  std::string statement_name;  ///< "sphere", for messages.
+  std::string folder;          ///< Of the main scene file; relative paths start here.
   /// The bound texture of a TextureRef in the float or spectrum name space; null when there is none.
   std::function<std::shared_ptr<Texture<float>>(int)> float_texture;
   std::function<std::shared_ptr<Texture<RGB>>(int)> spectrum_texture;
@@ -95,7 +95,7 @@ struct BindContext {
 /// One declared parameter of a plugin class, type-erased.
 struct ParamSpec {
   std::string name;
-  std::string type;                  ///< As a scene file and the docs spell it: "float texture", "string", ...
+  std::string type;  ///< As a scene file and the docs spell it: "float texture", "string", ...
   std::vector<ParamType> accepts;
   std::string default_text;
   Unit unit = Unit::None;
@@ -121,10 +121,21 @@ struct Binding {
 bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<std::string>& choices, Choice& out);
 
 template <class T>
-struct DefaultOf { using type = T; };
-template <> struct DefaultOf<Tex<float>> { using type = float; };
-template <> struct DefaultOf<Tex<RGB>> { using type = RGB; };
-template <> struct DefaultOf<std::string> { using type = const char*; };
+struct DefaultOf {
+  using type = T;
+};
+template <>
+struct DefaultOf<Tex<float>> {
+  using type = float;
+};
+template <>
+struct DefaultOf<Tex<RGB>> {
+  using type = RGB;
+};
+template <>
+struct DefaultOf<std::string> {
+  using type = const char*;
+};
 
 }  // namespace detail
 
@@ -157,9 +168,8 @@ DeclaredParam<Class, T> declare(T Class::*member, const char* name, T default_va
 }  // namespace detail
 
 template <class Class, class T>
-DeclaredParam<Class, T> param(T Class::*member, const char* name,
-                              typename detail::DefaultOf<T>::type default_value, Unit unit, const char* doc,
-                              Range range = kAny) {
+DeclaredParam<Class, T> param(T Class::*member, const char* name, typename detail::DefaultOf<T>::type default_value,
+                              Unit unit, const char* doc, Range range = kAny) {
   auto d = detail::declare(member, name, T(default_value), unit, doc, range);
   d.spec.default_text = detail::Binding<T>::to_text(d.default_value);
   return d;
@@ -167,8 +177,7 @@ DeclaredParam<Class, T> param(T Class::*member, const char* name,
 
 /// A parameter without a default: a list, a file name or an optional value, absent unless given.
 template <class Class, class T>
-DeclaredParam<Class, T> param(T Class::*member, const char* name, Unit unit, const char* doc,
-                              Range range = kAny) {
+DeclaredParam<Class, T> param(T Class::*member, const char* name, Unit unit, const char* doc, Range range = kAny) {
   return detail::declare(member, name, T{}, unit, doc, range);
 }
 

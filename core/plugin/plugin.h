@@ -14,8 +14,20 @@ class TextureStore;
 
 /// The effects a scene can call for. A stage exists in the render loop only when an effect needs it.
 enum class Effect : uint8_t {
-  AreaLight, EnvironmentLight, DeltaLight, Mirror, Refraction, Glossy, TextureFiltering, Bump, AlphaMask,
-  MotionBlur, DepthOfField, Instancing, Interface, kCount
+  AreaLight,
+  EnvironmentLight,
+  DeltaLight,
+  Mirror,
+  Refraction,
+  Glossy,
+  TextureFiltering,
+  Bump,
+  AlphaMask,
+  MotionBlur,
+  DepthOfField,
+  Instancing,
+  Interface,
+  kCount
 };
 const char* effect_name(Effect e);
 
@@ -28,16 +40,19 @@ struct EffectSet {
   }
   void add(Effect e) { bits |= 1u << static_cast<unsigned>(e); }
   bool has(Effect e) const { return (bits >> static_cast<unsigned>(e)) & 1u; }
-  EffectSet& operator|=(const EffectSet& o) { bits |= o.bits; return *this; }
+  EffectSet& operator|=(const EffectSet& o) {
+    bits |= o.bits;
+    return *this;
+  }
 };
 
 /// What preparing a plugin may use.
 struct PrepareContext {
   Diagnostics* diagnostics = nullptr;
-  SourcePos statement;            ///< The plugin's statement, for messages.
+  SourcePos statement;  ///< The plugin's statement, for messages.
   TextureStore* textures = nullptr;
   RenderSpace space;
-  double scene_radius = 1;        ///< Render space: radius of a sphere around the origin that holds all geometry.
+  double scene_radius = 1;  ///< Render space: radius of a sphere around the origin that holds all geometry.
   int samples_per_pixel = 1;
 };
 

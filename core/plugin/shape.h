@@ -14,8 +14,8 @@ namespace whit {
 
 class Shape : public Plugin {
  public:
-  Tex<float> alpha{1.0f};        ///< Where exactly 0 the surface is not there.
-  Tex<float> shadow_alpha{1.0f}; ///< The same, for shadow rays only, in addition to alpha.
+  Tex<float> alpha{1.0f};         ///< Where exactly 0 the surface is not there.
+  Tex<float> shadow_alpha{1.0f};  ///< The same, for shadow rays only, in addition to alpha.
 };
 
 /// For lists of coordinates: any number that is one. NaN, infinity and what a float cannot hold are errors at
@@ -35,10 +35,10 @@ inline auto shadowalpha_param() {
 struct MeshData {
   std::span<const double> positions;  ///< Flat, 3 per vertex, object space.
   std::vector<double> owned_positions;
-  std::vector<uint32_t> indices;      ///< 3 per triangle, counter-clockwise seen from the front.
-  std::vector<float> normals;         ///< Flat, 3 per vertex, object space, or empty.
-  std::vector<float> tangents;        ///< pbrt's "S", flat, 3 per vertex, or empty.
-  std::vector<float> uvs;             ///< Flat, 2 per vertex, or empty.
+  std::vector<uint32_t> indices;  ///< 3 per triangle, counter-clockwise seen from the front.
+  std::vector<float> normals;     ///< Flat, 3 per vertex, object space, or empty.
+  std::vector<float> tangents;    ///< pbrt's "S", flat, 3 per vertex, or empty.
+  std::vector<float> uvs;         ///< Flat, 2 per vertex, or empty.
 };
 
 /// Removes the triangles that have no area (two corners alike, or all three on a line as far as double
@@ -65,18 +65,18 @@ struct ObjectRays {
 
 /// A point of an analytic shape with its local geometry, in object space.
 struct SurfacePoint {
-  Vec3d p;            ///< On the surface (refined).
-  Vec3d p_error;      ///< Bound on |p - exact| per component.
+  Vec3d p;        ///< On the surface (refined).
+  Vec3d p_error;  ///< Bound on |p - exact| per component.
   double u = 0, v = 0;
   Vec3d dpdu, dpdv;
-  Vec3d dndu, dndv;   ///< Derivatives of the unit normal normalize(dpdu x dpdv).
+  Vec3d dndu, dndv;  ///< Derivatives of the unit normal normalize(dpdu x dpdv).
 };
 
 /// A point sampled on a shape for lighting.
 struct ShapeSample {
-  Vec3d p;      ///< In the space of the shape's placement.
-  Vec3d n;      ///< Unit, oriented as the shape's front.
-  double pdf;   ///< Density with respect to solid angle at the reference point, or to area (see the call).
+  Vec3d p;     ///< In the space of the shape's placement.
+  Vec3d n;     ///< Unit, oriented as the shape's front.
+  double pdf;  ///< Density with respect to solid angle at the reference point, or to area (see the call).
 };
 
 /// One sample of a shape for each of n reference points, structure of arrays, in the space of the placement.

@@ -17,9 +17,8 @@ FilterTable::FilterTable(const Filter& filter)
       table_(kSize * kSize) {
   for (int j = 0; j < kSize; ++j) {
     for (int i = 0; i < kSize; ++i) {
-      table_[static_cast<size_t>(j * kSize + i)] =
-          filter.evaluate((static_cast<float>(i) + 0.5f) * x_radius_ / kSize,
-                          (static_cast<float>(j) + 0.5f) * y_radius_ / kSize);
+      table_[static_cast<size_t>(j * kSize + i)] = filter.evaluate((static_cast<float>(i) + 0.5f) * x_radius_ / kSize,
+                                                                   (static_cast<float>(j) + 0.5f) * y_radius_ / kSize);
     }
   }
 }
@@ -41,7 +40,8 @@ void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   const int py0 = std::max(static_cast<int>(std::floor(dy - filter_->y_radius())) + 1, y0_);
   const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
   for (int y = py0; y <= py1; ++y) {
-    float* sums = &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
+    float* sums =
+        &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
     for (int x = px0; x <= px1; ++x, sums += 4) {
       const float w = filter_->weight(static_cast<float>(x) - dx, static_cast<float>(y) - dy);
       sums[0] += w * radiance.x;
@@ -80,7 +80,8 @@ void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tile
           for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
         }
       }
-      float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) + static_cast<size_t>(column))];
+      float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) +
+                                     static_cast<size_t>(column))];
       for (int c = 0; c < 3; ++c) out[c] = sum[3] != 0 ? std::max(0.0f, sum[c] / sum[3]) * scale : 0.0f;
     }
   });

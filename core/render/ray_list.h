@@ -14,8 +14,8 @@ class RayList {
   int n = 0;
   Vec3Lanes o, d;
   RGBLanes throughput;
-  int32_t* slot = nullptr;     ///< Index of the camera sample in the worker's chunk.
-  uint32_t* stream = nullptr;  ///< Branch of the ray tree, for the sampler.
+  int32_t* slot = nullptr;           ///< Index of the camera sample in the worker's chunk.
+  uint32_t* stream = nullptr;        ///< Branch of the ray tree, for the sampler.
   Vec3Lanes rx_o, rx_d, ry_o, ry_d;  ///< Differential rays; null when no effect needs them.
 
   explicit RayList(bool with_differentials) : with_differentials_(with_differentials) {}

@@ -1,11 +1,11 @@
 #include "core/render/render.h"
 
+#include <pmmintrin.h>
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 #include <xmmintrin.h>
-#include <pmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
@@ -52,7 +52,8 @@ class FilmRender {
     tbb::task_arena arena(threads);
     arena.execute([&] {
       tbb::parallel_for(
-          tbb::blocked_range<size_t>(0, tiles_.size(), 1), [&](const auto& range) {
+          tbb::blocked_range<size_t>(0, tiles_.size(), 1),
+          [&](const auto& range) {
             for (size_t t = range.begin(); t != range.end(); ++t) render_tile(t);
           },
           tbb::simple_partitioner());
@@ -80,7 +81,9 @@ class FilmRender {
       samples_.min.x = std::max(samples_.min.x, bounds[0]), samples_.max.x = std::min(samples_.max.x, bounds[1]);
       samples_.min.y = std::max(samples_.min.y, bounds[2]), samples_.max.y = std::min(samples_.max.y, bounds[3]);
     }
-    const auto tile_of = [](int p) { return p >= 0 ? p / TileSums::kTile : -((-p + TileSums::kTile - 1) / TileSums::kTile); };
+    const auto tile_of = [](int p) {
+      return p >= 0 ? p / TileSums::kTile : -((-p + TileSums::kTile - 1) / TileSums::kTile);
+    };
     if (samples_.max.x <= samples_.min.x || samples_.max.y <= samples_.min.y) return;
     first_tile_ = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
     tiles_x_ = tile_of(samples_.max.x - 1) - first_tile_.x + 1;
@@ -115,7 +118,8 @@ class FilmRender {
     report_progress();
   }
 
-  void render_samples(Worker& worker, TileSums& sums, int n, const int32_t* px, const int32_t* py, const uint32_t* index) {
+  void render_samples(Worker& worker, TileSums& sums, int n, const int32_t* px, const int32_t* py,
+                      const uint32_t* index) {
     ArenaScope scope(worker.arena);
     generate_camera_rays(worker, n, px, py, index);
     trace_chunk(worker);

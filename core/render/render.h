@@ -10,8 +10,8 @@
 namespace whit {
 
 struct RenderOptions {
-  int threads = 0;             ///< 0: one per core.
-  bool crop_given = false;     ///< crop overrides the film's.
+  int threads = 0;                ///< 0: one per core.
+  bool crop_given = false;        ///< crop overrides the film's.
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
   /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
   std::function<bool(double)> progress;
@@ -20,9 +20,9 @@ struct RenderOptions {
 struct RenderResult {
   Picture picture;
   RenderStatistics statistics;
-  double seconds = 0;   ///< Of the render loop, wall clock.
+  double seconds = 0;  ///< Of the render loop, wall clock.
   int threads = 1;
-  bool complete = true; ///< False when progress() stopped it.
+  bool complete = true;  ///< False when progress() stopped it.
 };
 
 /// The pixels a render covers: the film's crop, or the one given; x1 and y1 exclusive.

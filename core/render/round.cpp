@@ -6,8 +6,8 @@
 
 #include "core/base/fastmath.h"
 #include "core/base/hash.h"
-#include "core/plugin/bump.h"
 #include "core/batch/sort.h"
+#include "core/plugin/bump.h"
 
 namespace whit {
 namespace {
@@ -49,8 +49,8 @@ Round::Round(Worker& worker, int depth, int first, int count)
 // ---- Intersection ----
 
 void Round::intersect() {
-  ray_hits_ = {arena_.floats(count_), arena_.alloc<int32_t>(count_), arena_.alloc<uint32_t>(count_),
-               arena_.alloc<int32_t>(count_), arena_.floats(count_), arena_.floats(count_)};
+  ray_hits_ = {arena_.floats(count_),         arena_.alloc<int32_t>(count_), arena_.alloc<uint32_t>(count_),
+               arena_.alloc<int32_t>(count_), arena_.floats(count_),         arena_.floats(count_)};
   const float* time = nullptr;
   if (worker_.chunk.time) {
     float* t = arena_.floats(count_);
@@ -99,8 +99,8 @@ void Round::pass_through_interfaces() {
       ray_rx_o_.set(lanes[i], o[i]), ray_ry_o_.set(lanes[i], o[i]);
       ray_rx_d_.set(lanes[i], d), ray_ry_d_.set(lanes[i], d);
     }
-    const HitLanes next{arena_.floats(n), arena_.alloc<int32_t>(n), arena_.alloc<uint32_t>(n),
-                        arena_.alloc<int32_t>(n), arena_.floats(n), arena_.floats(n)};
+    const HitLanes next{arena_.floats(n),         arena_.alloc<int32_t>(n), arena_.alloc<uint32_t>(n),
+                        arena_.alloc<int32_t>(n), arena_.floats(n),         arena_.floats(n)};
     scene_.accel->intersect({n, o, hits_.d, nullptr, hits_.time}, next, false);
     worker_.statistics.passing_rays += n;
     int left = 0;
@@ -343,8 +343,10 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
   const float flip = shape.flips ? -1.0f : 1.0f;
   const RGB radiance = light.radiance;
   const bool two_sided = light.two_sided;
-  const Vec3f error = (Vec3f(std::abs(a.x), std::abs(a.y), std::abs(a.z)) + Vec3f(std::abs(b.x), std::abs(b.y), std::abs(b.z)) +
-                       Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z))) * 6e-7f;
+  const Vec3f error =
+      (Vec3f(std::abs(a.x), std::abs(a.y), std::abs(a.z)) + Vec3f(std::abs(b.x), std::abs(b.y), std::abs(b.z)) +
+       Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z))) *
+      6e-7f;
   const float back = std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
   for_lanes(samples.n, [&](int i) {
     const float root = safe_sqrt(samples.u[i]);
@@ -416,7 +418,8 @@ void Round::spawn(bool refraction, const Spawned& out) {
   float* choice = nullptr;
   if (std::any_of(runs_.begin(), runs_.end(), [&](const Run& r) { return count_lobes(r.lobes, type) > 1; })) {
     choice = arena_.floats(hits_.n);
-    scene_.sampler().get_1d(keys(), refraction ? worker_.layout.of_refraction(depth_) : worker_.layout.of_reflection(depth_), choice);
+    scene_.sampler().get_1d(
+        keys(), refraction ? worker_.layout.of_refraction(depth_) : worker_.layout.of_reflection(depth_), choice);
   }
   for (const Run& run : runs_) {
     const Vec3Lanes wi = out.wi.from(run.first);
@@ -468,7 +471,8 @@ void Round::spawn_differentials(const Run& run, bool refraction, const Spawned& 
 }
 
 /// Queues the new rays ray by ray, reflection before refraction: the order of a sample's rays is its own.
-void Round::append_children(const Spawned& reflected, const Spawned& refracted, bool any_reflected, bool any_refracted) {
+void Round::append_children(const Spawned& reflected, const Spawned& refracted, bool any_reflected,
+                            bool any_refracted) {
   RayList& next = worker_.level(depth_ + 1);
   next.reserve(next.n + 2 * hits_.n);
   int32_t* point_of = arena_.alloc<int32_t>(count_);

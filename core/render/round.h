@@ -59,7 +59,7 @@ class Round final : public RayRound {
   Vec3Lanes ray_o_, ray_d_, ray_rx_o_, ray_rx_d_, ray_ry_o_, ray_ry_d_;  ///< By ray.
   const float* ray_time_ = nullptr;
   HitLanes ray_hits_;
-  SurfaceHits hits_;        ///< By point: grouped by material.
+  SurfaceHits hits_;           ///< By point: grouped by material.
   int32_t* ray_of_ = nullptr;  ///< The ray (0 .. count) of a point.
   RGBLanes throughput_, radiance_;
   int32_t* slot_ = nullptr;

@@ -68,8 +68,8 @@ TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int fir
 }
 
 /// Points, partial derivatives and the geometric normal of triangles.
-void triangle_geometry(const TriangleLanes& t, const ShadingBatch& s, const GeometricPartials& g,
-                       const float* bary_u, const float* bary_v) {
+void triangle_geometry(const TriangleLanes& t, const ShadingBatch& s, const GeometricPartials& g, const float* bary_u,
+                       const float* bary_v) {
   for_lanes(s.n, [&](int i) {
     const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
     const Vec3f p0 = t.p.a[i], p1 = t.p.b[i], p2 = t.p.c[i];
@@ -162,7 +162,9 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
   if (s.dndu) triangle_normal_derivatives(t, s);
 }
 
-Vec3f to_float(const Vec3d& v) { return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)); }
+Vec3f to_float(const Vec3d& v) {
+  return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
 
 /// The group's local space of a hit: render space itself for world geometry.
 Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
@@ -171,7 +173,8 @@ Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   return interpolate_keys(instance.keys, h.time ? h.time[i] : 0).inverse();
 }
 
-void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const GeometricPartials& g) {
+void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
+                       const GeometricPartials& g) {
   for (int i = 0; i < s.n; ++i) {
     const AnalyticShape& shape = *scene.shapes[static_cast<size_t>(h.shape[first + i])].analytic;
     Vec3d p = Vec3d(h.o[first + i]) + static_cast<double>(h.t[first + i]) * Vec3d(h.d[first + i]);
@@ -235,7 +238,8 @@ Vec3d rotate_about(const Vec3d& v, const Vec3d& axis, double angle) {
   return v * c + axis.cross(v) * s + axis * (axis.dot(v) * (1 - c));
 }
 
-void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const GeometricPartials& g) {
+void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
+                    const GeometricPartials& g) {
   for (int i = 0; i < s.n; ++i) {
     const int lane = first + i;
     const Curves& curves = *scene.shapes[static_cast<size_t>(h.shape[lane])].curves;
@@ -248,9 +252,7 @@ void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const S
     const Vec3d dpdu = c.tangent / std::max(1e-30, static_cast<double>(range[1] - range[0]));
     const Vec3d across = curves.kind == CurveData::Kind::Ribbon ? c.normal : d;
     Vec3d dpdv = across.cross(dpdu).normalized() * c.width;
-    if (curves.kind == CurveData::Kind::Cylinder) {
-      dpdv = rotate_about(dpdv, dpdu.normalized(), -(v - 0.5) * M_PI);
-    }
+    if (curves.kind == CurveData::Kind::Cylinder) { dpdv = rotate_about(dpdv, dpdu.normalized(), -(v - 0.5) * M_PI); }
     const Vec3f p = to_float(o + static_cast<double>(h.t[lane]) * d);
     s.p.set(i, p);
     // A curve stands for a tube: rays leave from outside of it (pbrt's bound, twice the width).
@@ -277,13 +279,14 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
     const auto error_of = [&](int c) {
       // The float matrix Embree used differs from ours by half a unit in the last place of each entry.
       const double spread = std::abs(m[0][c]) * error.x + std::abs(m[1][c]) * error.y + std::abs(m[2][c]) * error.z;
-      const double rounding = std::abs(m[0][c] * local.x) + std::abs(m[1][c] * local.y) + std::abs(m[2][c] * local.z) +
-                              std::abs(m[3][c]);
+      const double rounding =
+          std::abs(m[0][c] * local.x) + std::abs(m[1][c] * local.y) + std::abs(m[2][c] * local.z) + std::abs(m[3][c]);
       return static_cast<float>(spread) + gamma_bound(4) * static_cast<float>(rounding);
     };
     s.p.set(i, to_float(p));
     s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
-    for (const Vec3Lanes* v : {&s.dpdu, &s.dpdv, &g.dpdu, &g.dpdv}) v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
+    for (const Vec3Lanes* v : {&s.dpdu, &s.dpdv, &g.dpdu, &g.dpdv})
+      v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
     // The normal keeps the side it has on the object (pbrt does not flip for the instance's own handedness).
     const Vec3d ng = transform_vector(nm, Vec3d(s.ng[i])).normalized();
     const Vec3d ns = transform_vector(nm, Vec3d(s.ns[i])).normalized();

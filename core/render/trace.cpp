@@ -69,10 +69,11 @@ void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
   if (!differentials) return;
   // rays.d has been normalised, so the camera's scale is measured on one axis-independent quantity: the
   // differential directions keep their own lengths relative to unit camera-space vectors.
-  const float scale = 1 / static_cast<float>(std::cbrt(std::abs(
-                              Vec3d(camera[0][0], camera[0][1], camera[0][2])
-                                  .dot(Vec3d(camera[1][0], camera[1][1], camera[1][2])
-                                           .cross(Vec3d(camera[2][0], camera[2][1], camera[2][2]))))));
+  const float scale =
+      1 /
+      static_cast<float>(std::cbrt(std::abs(Vec3d(camera[0][0], camera[0][1], camera[0][2])
+                                                .dot(Vec3d(camera[1][0], camera[1][1], camera[1][2])
+                                                         .cross(Vec3d(camera[2][0], camera[2][1], camera[2][2]))))));
   for_lanes(rays.n, [&](int i) {
     rays.rx_o.set(i, rotate(rays.rx_o[i]) + move);
     rays.ry_o.set(i, rotate(rays.ry_o[i]) + move);

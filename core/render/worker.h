@@ -14,10 +14,10 @@ namespace whit {
 
 /// Which sample dimension serves what. Dimensions exist only for live effects.
 struct DimensionLayout {
-  int time = -1;        ///< One dimension; -1 when nothing moves.
-  int lens = -1;        ///< Two dimensions; -1 for a pinhole.
-  int first_bounce = 2; ///< Of the lights at the first surface.
-  int per_bounce = 0;   ///< The lights' dimensions, then one for each specular lobe choice.
+  int time = -1;         ///< One dimension; -1 when nothing moves.
+  int lens = -1;         ///< Two dimensions; -1 for a pinhole.
+  int first_bounce = 2;  ///< Of the lights at the first surface.
+  int per_bounce = 0;    ///< The lights' dimensions, then one for each specular lobe choice.
 
   explicit DimensionLayout(const Scene& scene);
   int of_light(int depth, int offset) const { return first_bounce + depth * per_bounce + offset; }

@@ -14,7 +14,8 @@ class TexturedAlpha final : public AlphaTest {
     Vec2f uv(u, v);
     if (geometry_.mesh) uv = mesh_uv(prim, u, v);
     if (geometry_.analytic) {
-      const SurfacePoint s = geometry_.analytic->surface(transform_point(geometry_.analytic->scene_to_object(), Vec3d(p)));
+      const SurfacePoint s =
+          geometry_.analytic->surface(transform_point(geometry_.analytic->scene_to_object(), Vec3d(p)));
       uv = Vec2f(static_cast<float>(s.u), static_cast<float>(s.v));
     }
     ShadingBatch point;

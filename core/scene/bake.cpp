@@ -6,7 +6,9 @@
 namespace whit {
 namespace {
 
-Vec3d point_of(const std::span<const double>& flat, size_t i) { return {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]}; }
+Vec3d point_of(const std::span<const double>& flat, size_t i) {
+  return {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
+}
 
 void append(std::vector<float>& to, const Vec3d& v) {
   to.push_back(static_cast<float>(v.x));
@@ -85,8 +87,8 @@ std::unique_ptr<Curves> bake_curves(const CurveData& data, const Mat4d& object_t
   curves->kind = data.kind;
   curves->u_range = data.u_range;
   const Mat4d& m = object_to_group;
-  const double volume = std::abs(Vec3d(m[0][0], m[0][1], m[0][2])
-                                     .dot(Vec3d(m[1][0], m[1][1], m[1][2]).cross(Vec3d(m[2][0], m[2][1], m[2][2]))));
+  const double volume = std::abs(
+      Vec3d(m[0][0], m[0][1], m[0][2]).dot(Vec3d(m[1][0], m[1][1], m[1][2]).cross(Vec3d(m[2][0], m[2][1], m[2][2]))));
   const double width_scale = std::cbrt(volume);
   const size_t points = data.control_points.size() / 3;
   for (size_t i = 0; i < points; ++i) {

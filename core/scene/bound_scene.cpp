@@ -13,8 +13,8 @@ namespace {
 /// What to do with a statement whose plugin name is not known.
 struct Unknown {
   Severity severity = Severity::Warning;
-  const char* fallback = nullptr;   ///< The plugin to use instead, or null to leave the statement out.
-  const char* consequence = "";     ///< Said in the remedy.
+  const char* fallback = nullptr;  ///< The plugin to use instead, or null to leave the statement out.
+  const char* consequence = "";    ///< Said in the remedy.
 };
 
 class Binder {
@@ -29,7 +29,8 @@ class Binder {
     bind_materials();
     bind_options();
     for (const auto& light : description_.lights) {
-      scene_.lights.push_back(bind_entity<Light>(light, "light", {Severity::Warning, nullptr, "the light is left out"}));
+      scene_.lights.push_back(
+          bind_entity<Light>(light, "light", {Severity::Warning, nullptr, "the light is left out"}));
       if (auto& l = scene_.lights.back().plugin) l->light_to_world = transform(light.transform).start;
     }
     for (const auto& light : description_.area_lights) {
@@ -86,8 +87,9 @@ class Binder {
     const bool good = bind_parameters(info, *plugin, params, ctx, also_known);
     const size_t before = diagnostics_.all().size();
     if (good) plugin->check(diagnostics_, entity.where);
-    const bool checked = std::none_of(diagnostics_.all().begin() + static_cast<ptrdiff_t>(before), diagnostics_.all().end(),
-                                      [](const Diagnostic& d) { return d.severity == Severity::Error; });
+    const bool checked =
+        std::none_of(diagnostics_.all().begin() + static_cast<ptrdiff_t>(before), diagnostics_.all().end(),
+                     [](const Diagnostic& d) { return d.severity == Severity::Error; });
     if (good && checked) bound.plugin = std::dynamic_pointer_cast<T>(plugin);
     return bound;
   }
@@ -137,7 +139,8 @@ class Binder {
       scene_.sampler = bind_option<Sampler>(entity, "sampler", "halton", {});
       return;
     }
-    const PluginInfo* halton = find(entity, "sampler", {Severity::Warning, "halton", "halton is used instead, at the same number of samples"});
+    const PluginInfo* halton =
+        find(entity, "sampler", {Severity::Warning, "halton", "halton is used instead, at the same number of samples"});
     scene_.sampler = bind_as<Sampler>(entity, *halton, keep_only(entity.params, {"pixelsamples"}));
   }
 
@@ -148,9 +151,11 @@ class Binder {
       scene_.integrator = bind_option<Integrator>(entity, "integrator", "whitted", {});
       return;
     }
-    static const std::vector<std::string> pbrt = {"directlighting", "path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion"};
+    static const std::vector<std::string> pbrt = {"directlighting",  "path", "volpath", "bdpt", "mlt", "sppm",
+                                                  "ambientocclusion"};
     const bool known = std::find(pbrt.begin(), pbrt.end(), entity.plugin) != pbrt.end();
-    diagnostics_.warning(entity.plugin_at, fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"),
+    diagnostics_.warning(entity.plugin_at,
+                         fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"),
                          known ? "the picture is made with whitted: direct light, mirrors and refraction"
                                : "the picture is made with whitted" + did_you_mean(entity.plugin, pbrt));
     scene_.integrator = bind_as<Integrator>(entity, *find_plugin("integrator", "whitted"),
@@ -159,8 +164,8 @@ class Binder {
 
   void bind_textures() {
     for (const auto& t : description_.textures) {
-      scene_.textures.push_back(bind_entity<Plugin>(t, t.spectrum ? "spectrum texture" : "float texture",
-                                                    {Severity::Error, nullptr, ""}));
+      scene_.textures.push_back(
+          bind_entity<Plugin>(t, t.spectrum ? "spectrum texture" : "float texture", {Severity::Error, nullptr, ""}));
       const auto& plugin = scene_.textures.back().plugin;
       const Mat4d& to_world = transform(t.transform).start;
       if (auto f = std::dynamic_pointer_cast<Texture<float>>(plugin)) f->texture_to_world = to_world;
@@ -210,7 +215,8 @@ class Binder {
     ParameterList& merged = scene_.own_params.emplace_back();
     std::copy_if(shape.params.begin(), shape.params.end(), std::back_inserter(merged), overrides);
     for (const Parameter& p : material.params) {
-      const auto same = std::find_if(merged.begin(), merged.end(), [&](const Parameter& o) { return o.name == p.name; });
+      const auto same =
+          std::find_if(merged.begin(), merged.end(), [&](const Parameter& o) { return o.name == p.name; });
       if (same == merged.end()) {
         merged.push_back(p);
       } else if (p.type == ParamType::Texture && same->type != ParamType::Texture) {

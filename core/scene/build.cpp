@@ -19,7 +19,7 @@ struct LoadedShape {
   size_t description = 0;  ///< Index into SceneDescription::shapes.
   MeshData mesh;
   CurveData curves;
-  Box3d bounds;            ///< In the group's own world coordinates, double.
+  Box3d bounds;  ///< In the group's own world coordinates, double.
 };
 
 /// A group of shapes that share a space: the world, an object definition, or one moving shape.
@@ -47,7 +47,8 @@ Affine to_affine(const Mat4d& m) {
 
 class Builder {
  public:
-  Builder(BoundScene bound, EffectPlan plan, const BuildOptions& options, TextureStore& textures, Diagnostics& diagnostics)
+  Builder(BoundScene bound, EffectPlan plan, const BuildOptions& options, TextureStore& textures,
+          Diagnostics& diagnostics)
       : options_(options), textures_(textures), diagnostics_(diagnostics), scene_(std::make_unique<Scene>()) {
     scene_->bound = std::move(bound);
     scene_->plan = std::move(plan);
@@ -150,8 +151,8 @@ class Builder {
     } else if (auto* analytic = dynamic_cast<AnalyticShape*>(&shape)) {
       const Box3d box = analytic->object_bounds();
       for (int c = 0; c < 8; ++c) {
-        loaded.bounds.extendBy(transform_point(to_world, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
-                                                          c & 4 ? box.max.z : box.min.z}));
+        loaded.bounds.extendBy(transform_point(
+            to_world, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
       }
     }
     if (loaded.bounds.isEmpty()) return;
@@ -201,8 +202,8 @@ class Builder {
     Box3d out;
     if (box.isEmpty()) return out;
     for (int c = 0; c < 8; ++c) {
-      out.extendBy(transform_point(m, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
-                                       c & 4 ? box.max.z : box.min.z}));
+      out.extendBy(transform_point(
+          m, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
     }
     return out;
   }
@@ -227,15 +228,17 @@ class Builder {
     shape.material = scene_->bound.shape_material[loaded.description];
     shape.passes_through = scene_->materials[static_cast<size_t>(shape.material)]->is_interface();
     // A moving shape's handedness is that of its transform, which the instance applies.
-    shape.flips = d.reverse_orientation != swaps_handedness(group.moving_shape ? transform(d.transform).start : to_world);
+    shape.flips =
+        d.reverse_orientation != swaps_handedness(group.moving_shape ? transform(d.transform).start : to_world);
     const int index = static_cast<int>(scene_->shapes.size());
     if (dynamic_cast<MeshShape*>(&plugin)) {
       size_t degenerate = 0;
       scene_->meshes.push_back(bake_mesh(loaded.mesh, to_group, degenerate));
       shape.mesh = scene_->meshes.back().get();
       if (degenerate > 0) {
-        diagnostics_.warning(d.where, fmt::format("{} degenerate triangle{} without area", degenerate, degenerate == 1 ? "" : "s"),
-                             "left out; the picture is the same without");
+        diagnostics_.warning(
+            d.where, fmt::format("{} degenerate triangle{} without area", degenerate, degenerate == 1 ? "" : "s"),
+            "left out; the picture is the same without");
       }
       if (shape.mesh->indices.empty()) return;
     } else if (dynamic_cast<CurveShape*>(&plugin)) {
@@ -261,13 +264,14 @@ class Builder {
     if (shape.mesh) {
       const Mesh& m = *shape.mesh;
       scene_->accel->add_mesh(group.accel_group,
-                              {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index, alpha);
+                              {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index,
+                              alpha);
     } else if (shape.curves) {
       const Curves& c = *shape.curves;
-      scene_->accel->add_curves(group.accel_group,
-                                {c.control_points.data(), c.segment_count(), c.kind == CurveData::Kind::Ribbon,
-                                 c.normals.data()},
-                                index, alpha);
+      scene_->accel->add_curves(
+          group.accel_group,
+          {c.control_points.data(), c.segment_count(), c.kind == CurveData::Kind::Ribbon, c.normals.data()}, index,
+          alpha);
     } else {
       scene_->accel->add_analytic(group.accel_group, *shape.analytic, index, alpha);
     }
@@ -293,7 +297,8 @@ class Builder {
       const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
       const Group& object = groups_[static_cast<size_t>(instance.object + 1)];
       place(object, keys);
-      for (size_t g : moving_[instance.object]) place(groups_[g], combined(moving_transform(groups_[g]), transform(instance.transform)));
+      for (size_t g : moving_[instance.object])
+        place(groups_[g], combined(moving_transform(groups_[g]), transform(instance.transform)));
     }
   }
 

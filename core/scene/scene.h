@@ -17,9 +17,9 @@ namespace whit {
 struct Mesh {
   std::vector<float> positions;  ///< 3 per vertex, and one of padding that Embree may read.
   std::vector<uint32_t> indices;
-  std::vector<float> normals;    ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
-  std::vector<float> tangents;   ///< 3 per vertex or empty.
-  std::vector<float> uvs;        ///< 2 per vertex or empty.
+  std::vector<float> normals;   ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
+  std::vector<float> tangents;  ///< 3 per vertex or empty.
+  std::vector<float> uvs;       ///< 2 per vertex or empty.
   size_t triangle_count() const { return indices.size() / 3; }
   Vec3f position(uint32_t i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
   Vec3f normal(uint32_t i) const { return {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}; }
@@ -42,11 +42,11 @@ struct SceneShape {
   const Mesh* mesh = nullptr;
   const Curves* curves = nullptr;
   const AnalyticShape* analytic = nullptr;
-  int material = 0;           ///< Index into Scene::materials.
-  int sort_key = 0;           ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
-  int emission = -1;          ///< Index into Scene::emissions.
-  bool flips = false;         ///< ReverseOrientation XOR handedness: normals flip.
-  bool passes_through = false;///< Its material is an interface: rays go on.
+  int material = 0;             ///< Index into Scene::materials.
+  int sort_key = 0;             ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
+  int emission = -1;            ///< Index into Scene::emissions.
+  bool flips = false;           ///< ReverseOrientation XOR handedness: normals flip.
+  bool passes_through = false;  ///< Its material is an interface: rays go on.
 };
 
 struct Emission {
@@ -66,19 +66,19 @@ struct SceneLight {
   const Light* light = nullptr;
   int shape = -1;
   uint32_t prim = 0;
-  RGB radiance{0.0f};       ///< Of an emitting primitive.
+  RGB radiance{0.0f};  ///< Of an emitting primitive.
   bool two_sided = false;
   bool is_delta = false;
-  int dimension = -1;       ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
+  int dimension = -1;  ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
 };
 
 /// The numbers of the render that the command line may override.
 struct BuildOptions {
-  int samples_per_pixel = 0;      ///< 0: the scene's.
+  int samples_per_pixel = 0;  ///< 0: the scene's.
   uint32_t seed = 0;
-  bool quick = false;             ///< pbrt's --quick: a quarter of the resolution, one sample.
+  bool quick = false;  ///< pbrt's --quick: a quarter of the resolution, one sample.
   bool robust_traversal = true;
-  bool keep_going = false;        ///< Build what is usable despite errors.
+  bool keep_going = false;  ///< Build what is usable despite errors.
 };
 
 struct Scene {

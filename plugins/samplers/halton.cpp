@@ -54,24 +54,53 @@ class Halton final : public Sampler {
       for_lanes(keys.n, [=](int i) { u[i] = v[i] = 0.5f; });
       return;
     }
-    const auto shift_x = static_cast<int32_t>(mix32(seed) & 0xffffu), shift_y = static_cast<int32_t>(mix32(seed) >> 16);
-    const int digits = base3_digits(128 * (static_cast<uint32_t>(pixel_samples) + 1));
-    const double cells = std::pow(3.0, digits);
-    const auto width = static_cast<float>(1 / cells);
-    for_lanes(keys.n, [=](int i) {
-      const auto x = static_cast<uint32_t>(keys.px[i] + shift_x) & 127u;
-      const auto y = static_cast<uint32_t>((keys.py[i] + shift_y) % 243 + 243) % 243u;
-      const uint32_t x_index = reverse_bits(x) >> 25, y_index = reverse_base3(y, 5);
-      // The first sample that falls into this pixel of the block, by the Chinese remainder theorem:
-      // 243 * 59 = 1 modulo 128, and 128 * 131 = 1 modulo 243.
-      const uint32_t first = (x_index * (243u * 59u) + y_index * (128u * 131u)) % 31104u;
-      u[i] = unit_float(reverse_bits(first / 128u + keys.index[i] * 243u));
-      const float b = static_cast<float>(static_cast<int32_t>(reverse_base3(first / 243u + keys.index[i] * 128u, digits))) * width;
-      v[i] = b < kBelowOne ? b : kBelowOne;
-    });
+    uint32_t x_index[kBlock], y_index[kBlock];
+    for (int first = 0; first < keys.n; first += kBlock) {
+      const int n = std::min(kBlock, keys.n - first);
+      film_indices(keys, first, n, x_index, y_index);
+      float* x = u + first;
+      for_lanes(n, [&](int i) { x[i] = unit_float(reverse_bits(x_index[i])); });
+      reverse_base3_lanes(n, y_index, v + first);
+    }
   }
 
  private:
+  /// The numbers whose radical inverses in base 2 and 3 are the positions within the pixels.
+  void film_indices(const SampleKeys& keys, int first, int n, uint32_t* x_index, uint32_t* y_index) const {
+    const uint32_t shift_x = mix32(seed) & 127u, shift_y = mix32(seed) % 243u;
+    const int32_t *px = keys.px + first, *py = keys.py + first;
+    const uint32_t* sample = keys.index + first;
+    for_lanes(n, [=](int i) {
+      // Pixels left of and above the picture count too (a wide filter's border): no negative remainders.
+      const uint32_t x = (static_cast<uint32_t>(px[i]) + shift_x) & 127u;
+      const uint32_t y = (static_cast<uint32_t>(py[i] + 243 * 256) + shift_y) % 243u;
+      const uint32_t a = reverse_bits(x) >> 25, b = reverse_base3(y, 5);
+      // The first sample that falls into this pixel of the block, by the Chinese remainder theorem:
+      // 243 * 59 = 1 modulo 128, and 128 * 131 = 1 modulo 243.
+      const uint32_t start = (a * (243u * 59u) + b * (128u * 131u)) % 31104u;
+      x_index[i] = start / 128u + sample[i] * 243u;
+      y_index[i] = start / 243u + sample[i] * 128u;
+    });
+  }
+
+  /// Radical inverses in base 3, digit by digit over the block.
+  void reverse_base3_lanes(int n, uint32_t* index, float* out) const {
+    uint32_t value[kBlock] = {};
+    const int digits = base3_digits(128 * (static_cast<uint32_t>(pixel_samples) + 1));
+    for (int d = 0; d < digits; ++d) {
+      for_lanes(n, [&](int i) {
+        const uint32_t rest = index[i] / 3u;
+        value[i] = 3 * value[i] + (index[i] - 3 * rest);
+        index[i] = rest;
+      });
+    }
+    const auto width = static_cast<float>(1 / std::pow(3.0, digits));
+    for_lanes(n, [&](int i) {
+      const float b = static_cast<float>(value[i]) * width;
+      out[i] = b < kBelowOne ? b : kBelowOne;
+    });
+  }
+
   /// Keys and shuffled sample numbers of n lanes; `purpose` tells dimensions apart. A sample number out of range would
   /// never come to rest in shuffle(), so it counts as the last.
   void begin(const SampleKeys& keys, int first, int n, uint32_t purpose, uint32_t* key, uint32_t* index) const {

@@ -43,12 +43,14 @@ nlohmann::json bench_one(const std::string& name, const SceneDescription& world,
                          double parse_seconds, uint64_t bytes, Diagnostics& diagnostics) {
   PlannedScene planned = plan_scene(world, sources, diagnostics);
   TextureStore textures;
-  const std::unique_ptr<Scene> scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, diagnostics);
+  const std::unique_ptr<Scene> scene =
+      build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, diagnostics);
   if (!scene || diagnostics.has_errors()) return {};
   RenderStatistics s;
   const Spread all = samples_per_core(*scene, 0, runs, s), one = samples_per_core(*scene, 1, runs, s);
   const int cores = tbb::this_task_arena::max_concurrency();
-  const double rays_per_sample = static_cast<double>(s.rays()) / static_cast<double>(std::max<int64_t>(1, s.camera_samples));
+  const double rays_per_sample =
+      static_cast<double>(s.rays()) / static_cast<double>(std::max<int64_t>(1, s.camera_samples));
   return {{"name", name},
           {"camera_samples_per_s_per_core", one.median},
           {"spread", {one.low, one.high}},
@@ -64,8 +66,9 @@ nlohmann::json bench_one(const std::string& name, const SceneDescription& world,
 void print_row(const nlohmann::json& j) {
   fmt::print("{:<20} {:>9.2f} {:>7.2f}-{:<7.2f} {:>9.2f} {:>8.2f} {:>9} {:>9}\n", j["name"].get<std::string>(),
              j["camera_samples_per_s_per_core"].get<double>() / 1e6, j["spread"][0].get<double>() / 1e6,
-             j["spread"][1].get<double>() / 1e6, j["rays_per_s_per_core"].get<double>() / 1e6, j["scaling"].get<double>(),
-             count_text(j["triangles"].get<double>()), bytes_text(j["peak_memory_bytes"].get<double>()));
+             j["spread"][1].get<double>() / 1e6, j["rays_per_s_per_core"].get<double>() / 1e6,
+             j["scaling"].get<double>(), count_text(j["triangles"].get<double>()),
+             bytes_text(j["peak_memory_bytes"].get<double>()));
 }
 
 }  // namespace
@@ -95,7 +98,8 @@ int bench_command(const Arguments& args) {
   };
   if (!as_json) {
     fmt::print("{}, medians of {} runs on one thread; M = million per second and core\n", accel_version(), runs);
-    fmt::print("{:<20} {:>9} {:>15} {:>9} {:>8} {:>9} {:>9}\n", "scene", "M samples", "spread", "M rays", "scaling", "triangles", "memory");
+    fmt::print("{:<20} {:>9} {:>15} {:>9} {:>8} {:>9} {:>9}\n", "scene", "M samples", "spread", "M rays", "scaling",
+               "triangles", "memory");
   }
   for (const BenchScene& scene : bench_scenes()) {
     Sources sources;

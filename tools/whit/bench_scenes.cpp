@@ -28,7 +28,8 @@ std::string bumpy_ball(int n) {
       if (j + 1 < n / 2) fmt::format_to(out(indices), "{} {} {}\n", b, c, d);
     }
   }
-  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [{}] \"point P\" [{}] \"normal N\" [{}]\n", indices, p, normals);
+  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [{}] \"point P\" [{}] \"normal N\" [{}]\n", indices, p,
+                     normals);
 }
 
 std::string mesh_scene() {
@@ -50,7 +51,8 @@ Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-9 -9 -1  9 -9 -
 Material "plastic" "rgb Kd" [0.35 0.12 0.1] "rgb Ks" [0.3 0.3 0.3] "float roughness" 0.05
 {}
 WorldEnd
-)", bumpy_ball(224));
+)",
+                     bumpy_ball(224));
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 #include "tools/whit/command_line.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "core/base/diagnostics.h"
 #include "tools/whit/terminal.h"
@@ -23,7 +23,8 @@ std::string unknown_flag(const CLI::App& app, const Arguments& args) {
   const std::vector<std::string> known = flag_names(app);
   for (const std::string& a : args) {
     const std::string name = a.substr(0, a.find('='));
-    if (name.size() > 2 && name.compare(0, 2, "--") == 0 && std::find(known.begin(), known.end(), name) == known.end()) {
+    if (name.size() > 2 && name.compare(0, 2, "--") == 0 &&
+        std::find(known.begin(), known.end(), name) == known.end()) {
       return name;
     }
   }
@@ -44,7 +45,8 @@ bool parse_arguments(CLI::App& app, const Arguments& args, int& code) {
     const std::string flag = unknown_flag(app, args);
     if (!flag.empty()) {
       const std::string near = nearest_name(flag, flag_names(app));
-      say(fmt::format("{}: unknown flag {}{}", app.get_name(), flag, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+      say(fmt::format("{}: unknown flag {}{}", app.get_name(), flag,
+                      near.empty() ? "" : fmt::format("; did you mean {}?", near)));
     } else {
       say(fmt::format("{}: {}", app.get_name(), e.what()));
     }

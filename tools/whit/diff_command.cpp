@@ -36,16 +36,23 @@ int diff_command(const Arguments& args) {
   if (exact && why.empty() && c.differing_pixels > 0) why.push_back("not equal");
   if (json) {
     nlohmann::json j = {{"equal", c.failure.empty() && c.differing_pixels == 0},
-                        {"accepted", why.empty()}, {"why", why}, {"relmse", c.relmse}, {"ratio", c.ratio},
-                        {"block", c.block}, {"max_difference", c.max_difference}, {"differing_pixels", c.differing_pixels}};
+                        {"accepted", why.empty()},
+                        {"why", why},
+                        {"relmse", c.relmse},
+                        {"ratio", c.ratio},
+                        {"block", c.block},
+                        {"max_difference", c.max_difference},
+                        {"differing_pixels", c.differing_pixels}};
     if (c.shifted) j["shift"] = {c.shift_x, c.shift_y};
     fmt::print("{}\n", j.dump(1));
   } else if (!c.failure.empty()) {
     fmt::print("{}\n", c.failure);
   } else {
-    fmt::print("relMSE {:.3g}  ratio {:.5f}  block {:.4f}  shift {}  largest difference {:.3g}  {} pixels differ  PSNR {:.1f} dB\n",
-               c.relmse, c.ratio, c.block, c.shifted ? fmt::format("{:+d},{:+d}", c.shift_x, c.shift_y) : "-",
-               c.max_difference, c.differing_pixels, c.psnr);
+    fmt::print(
+        "relMSE {:.3g}  ratio {:.5f}  block {:.4f}  shift {}  largest difference {:.3g}  {} pixels differ  PSNR {:.1f} "
+        "dB\n",
+        c.relmse, c.ratio, c.block, c.shifted ? fmt::format("{:+d},{:+d}", c.shift_x, c.shift_y) : "-",
+        c.max_difference, c.differing_pixels, c.psnr);
   }
   return why.empty() ? kDone : kNo;
 }

@@ -24,7 +24,8 @@ nlohmann::json describe_effects(const EffectPlan& plan, const Sources& sources) 
       if (cause.effect != effect) continue;
       if (count++ < kShown) causes.push_back({{"what", cause.what}, {"where", sources.location(cause.where)}});
     }
-    effects.push_back({{"effect", effect_name(effect)}, {"on", plan.live(effect)}, {"causes", causes}, {"count", count}});
+    effects.push_back(
+        {{"effect", effect_name(effect)}, {"on", plan.live(effect)}, {"causes", causes}, {"count", count}});
   }
   return effects;
 }
@@ -40,7 +41,8 @@ nlohmann::json describe_left_out(const PlannedScene& p, const Sources& sources) 
     if (!p.plan.texture_live[i]) add("texture", d.textures[i].name, d.textures[i].where);
   }
   for (size_t i = 1; i < d.materials.size(); ++i) {
-    if (!p.plan.material_live[i]) add("material", d.materials[i].name.empty() ? d.materials[i].plugin : d.materials[i].name, d.materials[i].where);
+    if (!p.plan.material_live[i])
+      add("material", d.materials[i].name.empty() ? d.materials[i].plugin : d.materials[i].name, d.materials[i].where);
   }
   for (size_t i = 0; i < d.lights.size(); ++i) {
     if (!p.plan.light_live[i]) add("light", d.lights[i].plugin, d.lights[i].where);
@@ -55,7 +57,8 @@ void print_plan(const nlohmann::json& world) {
   for (const auto& e : world["effects"]) {
     std::string because;
     for (const auto& c : e["causes"]) {
-      because += fmt::format("{}{} at {}", because.empty() ? "" : "; ", c["what"].get<std::string>(), c["where"].get<std::string>());
+      because += fmt::format("{}{} at {}", because.empty() ? "" : "; ", c["what"].get<std::string>(),
+                             c["where"].get<std::string>());
     }
     const size_t more = e["count"].get<size_t>() - e["causes"].size();
     if (more > 0) because += fmt::format("; {} more", more);
@@ -63,7 +66,8 @@ void print_plan(const nlohmann::json& world) {
   }
   fmt::print("{:<18} {}\n", "ray differentials", world["differentials"].get<bool>() ? "carried" : "none");
   for (const auto& l : world["left_out"]) {
-    fmt::print("left out: {} \"{}\" at {}\n", l["kind"].get<std::string>(), l["name"].get<std::string>(), l["where"].get<std::string>());
+    fmt::print("left out: {} \"{}\" at {}\n", l["kind"].get<std::string>(), l["name"].get<std::string>(),
+               l["where"].get<std::string>());
   }
   for (const auto& i : world["ignored"]) fmt::print("not simulated: {}\n", i.get<std::string>());
 }
@@ -73,7 +77,8 @@ void print_plan(const nlohmann::json& world) {
 int explain_command(const Arguments& args) {
   std::string path;
   bool as_json = false;
-  CLI::App app("Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.", "whit explain");
+  CLI::App app("Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
+               "whit explain");
   app.add_option("scene", path, "Scene file; standard input without");
   app.add_flag("--json", as_json, "Print the plan as JSON");
   int code = kDone;

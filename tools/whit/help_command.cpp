@@ -83,7 +83,8 @@ int help_command(const Arguments& args) {
   }
   const PluginInfo* p = find_plugin(category, args[used]);
   if (!p) {
-    say(fmt::format("whit help: no {} \"{}\"{}", category, args[used], remedy(did_you_mean(args[used], plugin_names(category)))));
+    say(fmt::format("whit help: no {} \"{}\"{}", category, args[used],
+                    remedy(did_you_mean(args[used], plugin_names(category)))));
     return kUsage;
   }
   print_plugin(*p);

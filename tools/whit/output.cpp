@@ -33,8 +33,9 @@ std::string plan_output(const OutputRequest& request, const Film& film, OutputPl
     plan.main_file = (scene.stem().empty() || request.scene_path == "-" ? "whit" : scene.stem().string()) + ".exr";
   }
   if (is_linear_format(plan.main_file) && request.display != "none") {
-    plan.display_file = !request.display.empty() ? request.display
-                                                 : std::filesystem::path(plan.main_file).replace_extension(".png").string();
+    plan.display_file = !request.display.empty()
+                            ? request.display
+                            : std::filesystem::path(plan.main_file).replace_extension(".png").string();
   }
   for (const std::string& path : {plan.main_file, plan.display_file}) {
     if (path.empty()) continue;

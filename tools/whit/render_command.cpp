@@ -66,7 +66,8 @@ void declare(CLI::App& app, Settings& s) {
   app.add_option("--view", s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's");
   app.add_option("--ocio", s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one");
   app.add_option("--exposure", s.output.exposure, "Stops by which the display picture is brightened");
-  app.add_option("--type", s.half_or_float, "Numbers of an .exr: half or float")->check(CLI::IsMember({"half", "float"}));
+  app.add_option("--type", s.half_or_float, "Numbers of an .exr: half or float")
+      ->check(CLI::IsMember({"half", "float"}));
   app.add_option("--traversal", s.traversal, "robust (watertight) or fast")->check(CLI::IsMember({"robust", "fast"}));
   app.add_option("--texture-memory", s.texture_memory, "MiB of decoded textures at most")->check(CLI::PositiveNumber);
   app.add_flag("--quick", s.quick, "A quarter of the resolution each way, one sample per pixel");
@@ -154,7 +155,8 @@ class RenderJob {
     OutputPlan output;
     if (std::string problem = plan_output(output_request(), *planned.bound.film.plugin, output); !problem.empty()) {
       say("whit: " + problem);
-      return problem.find("view") != std::string::npos && problem.find("config") == std::string::npos ? kUsage : kFileError;
+      return problem.find("view") != std::string::npos && problem.find("config") == std::string::npos ? kUsage
+                                                                                                      : kFileError;
     }
     const auto start = std::chrono::steady_clock::now();
     Diagnostics building;
@@ -238,25 +240,30 @@ class RenderJob {
   }
 
   static void report_invalid(const RenderStatistics& s) {
-    say(fmt::format("whit: warning: {} samples were not finite or negative and were left out; the first is sample {} of "
-                    "pixel {},{}", s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x,
-                    s.first_invalid_pixel.y));
+    say(fmt::format(
+        "whit: warning: {} samples were not finite or negative and were left out; the first is sample {} of "
+        "pixel {},{}",
+        s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y));
   }
 
-  void summarise(const Scene& scene, const RenderResult& r, const OutputPlan& output, const TextureStore& textures) const {
+  void summarise(const Scene& scene, const RenderResult& r, const OutputPlan& output,
+                 const TextureStore& textures) const {
     const RenderStatistics& s = r.statistics;
     say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times_.parse),
                     duration_text(times_.plan), duration_text(times_.build), duration_text(times_.render),
                     duration_text(times_.write), r.threads, r.threads == 1 ? "" : "s"));
-    say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow; {:.2f} Mrays/s.", count_text(s.rays()),
-                    count_text(s.camera_rays), count_text(s.reflection_rays), count_text(s.refraction_rays),
-                    count_text(s.shadow_rays), s.rays() / std::max(1e-9, r.seconds) / 1e6));
+    say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow; {:.2f} Mrays/s.",
+                    count_text(s.rays()), count_text(s.camera_rays), count_text(s.reflection_rays),
+                    count_text(s.refraction_rays), count_text(s.shadow_rays),
+                    s.rays() / std::max(1e-9, r.seconds) / 1e6));
     say(fmt::format("{} samples per pixel, {} triangles, peak memory {}, invalid samples {}.", scene.samples_per_pixel,
-                    count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()), s.invalid_samples));
+                    count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
+                    s.invalid_samples));
     if (settings_.stats) more_statistics(scene, s, textures);
     if (is_linear_format(output.main_file)) {
       say(fmt::format("linear:  {}", output.main_file));
-      if (!output.display_file.empty()) say(fmt::format("display: {}  [{}]", output.display_file, output.display->describe()));
+      if (!output.display_file.empty())
+        say(fmt::format("display: {}  [{}]", output.display_file, output.display->describe()));
     } else {
       say(fmt::format("display: {}  [{}]", output.main_file, output.display->describe()));
     }
@@ -265,8 +272,8 @@ class RenderJob {
   static void more_statistics(const Scene& scene, const RenderStatistics& s, const TextureStore& textures) {
     const TextureStatistics t = textures.statistics();
     say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
-                    bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(), scene.instances.size(),
-                    scene.lights.size()));
+                    bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(),
+                    scene.instances.size(), scene.lights.size()));
     say(fmt::format("{} surface points, {} footprints, {} interface crossings.", count_text(s.surface_points),
                     count_text(s.footprints), count_text(s.passing_rays)));
     say(fmt::format("textures: {} lookups, {} decodes, {} evictions, peak {}.", count_text(t.lookups), t.decodes,
