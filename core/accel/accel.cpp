@@ -131,6 +131,17 @@ void alpha_filter(const RTCFilterFunctionNArguments* args) {
   }
 }
 
+/// Embree's assertions end the program for rays that are not finite or absurdly far away.
+template <class Packet>
+bool is_usable(const Packet& ray, int i) {
+  constexpr float kFar = 1.8e18f;
+  const float o = std::max(std::max(std::abs(ray.org_x[i]), std::abs(ray.org_y[i])), std::abs(ray.org_z[i]));
+  const float d = std::max(std::max(std::abs(ray.dir_x[i]), std::abs(ray.dir_y[i])), std::abs(ray.dir_z[i]));
+  // The sums see a NaN, which max() may drop.
+  const float sum = ray.org_x[i] + ray.org_y[i] + ray.org_z[i] + ray.dir_x[i] + ray.dir_y[i] + ray.dir_z[i];
+  return (o <= kFar) & (d <= kFar) & (sum == sum) & (ray.tfar[i] == ray.tfar[i]);
+}
+
 /// Fills one packet from lanes [first, first + count); lanes beyond count are switched off by `valid`.
 template <class Packet>
 void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* valid) {
@@ -145,10 +156,10 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
     ray.tfar[i] = std::numeric_limits<float>::infinity();
     ray.mask[i] = 0xffffffffu;
     ray.flags[i] = 0;
-    valid[i] = i < count ? -1 : 0;
   }
   if (rays.t_max) copy(ray.tfar, rays.t_max);
   if (rays.time) copy(ray.time, rays.time);
+  for (int i = 0; i < kWidth; ++i) valid[i] = (i < count) & is_usable(ray, i) ? -1 : 0;
 }
 
 }  // namespace
@@ -305,6 +316,7 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
     std::memcpy(hits.v + first, packet.hit.v, bytes);
     std::memcpy(hits.prim + first, packet.hit.primID, bytes);
     for (int i = 0; i < count; ++i) {
+      if (!valid[i]) hits.t[first + i] = std::numeric_limits<float>::quiet_NaN();
       const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
       const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
       const bool instanced = hit && instance != RTC_INVALID_GEOMETRY_ID;

@@ -14,7 +14,7 @@
 
 namespace whit {
 
-/// n rays, structure of arrays, in render space. Directions are unit vectors.
+/// n rays, structure of arrays, in render space. Directions are unit vectors. A ray that is not finite hits nothing.
 struct RayLanes {
   int n = 0;
   Vec3Lanes o, d;

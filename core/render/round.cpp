@@ -1,6 +1,7 @@
 #include "core/render/round.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -115,6 +116,7 @@ void Round::pass_through_interfaces() {
 }
 
 void Round::add_escaped() {
+  report_lost_rays();
   if (scene_.environments.empty()) return;
   ArenaScope scope(arena_);
   int32_t* lanes = arena_.alloc<int32_t>(count_);
@@ -133,6 +135,14 @@ void Round::add_escaped() {
   for (int i = 0; i < n; ++i) {
     const int ray = first_ + lanes[i], slot = rays_.slot[ray];
     sum.set(slot, sum[slot] + rays_.throughput[ray] * radiance[i]);
+  }
+}
+
+/// A ray that could not be traced makes its sample invalid, so that it is counted and not just missing.
+void Round::report_lost_rays() {
+  const RGBLanes& sum = worker_.chunk.radiance;
+  for (int i = 0; i < count_; ++i) {
+    if (std::isnan(ray_hits_.t[i])) sum.set(rays_.slot[first_ + i], RGB(std::numeric_limits<float>::quiet_NaN()));
   }
 }
 

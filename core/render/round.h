@@ -30,6 +30,7 @@ class Round final : public RayRound {
   using Run = MaterialRun;
 
   void pass_through_interfaces();
+  void report_lost_rays();
   void gather_hits(const int32_t* order, int n);
   void shade_runs();
   SampleKeys keys() const;

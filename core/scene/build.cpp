@@ -252,7 +252,10 @@ class Builder {
       shape.analytic = &analytic;
     }
     shape.sort_key = sort_key(shape, index);
-    shape.emission = emission_of(d);
+    shape.emission = group.moving_shape ? -1 : emission_of(d);
+    if (group.moving_shape && d.area_light >= 0) {
+      diagnostics_.warning(d.where, "a moving shape cannot be an area light", "it is shown without emission, as in pbrt");
+    }
     auto alpha = make_alpha_test(shape, plugin);
     attach(group, shape, index, alpha.get());
     if (alpha) scene_->alpha_tests.push_back(std::move(alpha));

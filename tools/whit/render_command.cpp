@@ -58,11 +58,13 @@ void declare(CLI::App& app, Settings& s) {
   app.add_option("scenes", s.scenes, "Scene files; standard input without any");
   app.add_option("--outfile,-o", s.output.outfile, "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)");
   app.add_option("--display", s.output.display, "Display picture beside a linear one; 'none' for none (default: .png)");
-  app.add_option("--nthreads", s.threads, "Threads; 0 is one per core")->check(CLI::NonNegativeNumber);
-  app.add_option("--cropwindow", s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]")->expected(4);
-  app.add_option("--spp", s.spp, "Samples per pixel, instead of the scene's")->check(CLI::PositiveNumber);
+  app.add_option("--nthreads", s.threads, "Threads; 0 is one per core")->check(CLI::Range(0, 4096));
+  app.add_option("--cropwindow", s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]")
+      ->expected(4)
+      ->allow_extra_args(false);
+  app.add_option("--spp", s.spp, "Samples per pixel, instead of the scene's")->check(CLI::Range(1, 1 << 30));
   app.add_option("--seed", s.seed, "Seed of the random numbers");
-  app.add_option("--pixel", s.pixel, "Render one pixel: x,y")->expected(2);
+  app.add_option("--pixel", s.pixel, "Render one pixel: x,y")->expected(2)->allow_extra_args(false);
   app.add_option("--view", s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's");
   app.add_option("--ocio", s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one");
   app.add_option("--exposure", s.output.exposure, "Stops by which the display picture is brightened");
@@ -155,8 +157,8 @@ class RenderJob {
     OutputPlan output;
     if (std::string problem = plan_output(output_request(), *planned.bound.film.plugin, output); !problem.empty()) {
       say("whit: " + problem);
-      return problem.find("view") != std::string::npos && problem.find("config") == std::string::npos ? kUsage
-                                                                                                      : kFileError;
+      const bool view = problem.rfind("unknown view", 0) == 0 || problem.rfind("view ", 0) == 0;
+      return view ? kUsage : kFileError;
     }
     const auto start = std::chrono::steady_clock::now();
     Diagnostics building;
@@ -294,7 +296,10 @@ int print_normal_form(const Settings& s) {
     FormatOptions options;
     options.expand_includes = true;
     options.to_ply = s.toply;
-    const Diagnostics d = format_file(sources, path, std::cout, options);
+    const Diagnostics d =
+        path == "-" ? format_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}}, "",
+                                  std::cout, options)
+                    : format_file(sources, path, std::cout, options);
     print_diagnostics(sources, d);
     code = std::max(code, exit_code(d));
   }
