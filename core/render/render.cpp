@@ -115,6 +115,7 @@ class FilmRender {
       }
     }
     if (n > 0) render_samples(worker, tiles_[t], n, px, py, index);
+    if (options_.tile_done) preview_tile(tiles_[t], {{x0, y0}, {x1, y1}});
     report_progress();
   }
 
@@ -136,6 +137,21 @@ class FilmRender {
       if (y > brightest) l *= brightest / y;
       sums.add(c.film_x[i], c.film_y[i], l * c.ray_weight[i]);
     }
+  }
+
+  void preview_tile(const TileSums& tile, Box2i window) const {
+    const Box2i& whole = result_.picture.window;
+    window.min = {std::max(window.min.x, whole.min.x), std::max(window.min.y, whole.min.y)};
+    window.max = {std::min(window.max.x, whole.max.x), std::min(window.max.y, whole.max.y)};
+    if (window.min.x >= window.max.x || window.min.y >= window.max.y) return;
+    std::vector<float> rgb;
+    for (int y = window.min.y; y < window.max.y; ++y) {
+      for (int x = window.min.x; x < window.max.x; ++x) {
+        const float* s = tile.at(x, y);
+        for (int c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? s[c] / s[3] : 0.0f);
+      }
+    }
+    options_.tile_done(window, rgb);
   }
 
   void report_progress() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 
 #include "core/render/film_buffer.h"
 #include "core/render/statistics.h"
@@ -15,6 +16,9 @@ struct RenderOptions {
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
   /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
   std::function<bool(double)> progress;
+  /// Called from any worker when a tile's own samples are done: its window and linear RGB, row by row, without what
+  /// the neighbours' samples add within the filter's reach. For previews.
+  std::function<void(const Box2i&, std::span<const float>)> tile_done;
 };
 
 struct RenderResult {

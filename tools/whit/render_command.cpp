@@ -12,6 +12,7 @@
 #include "core/accel/accel.h"
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
+#include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/output.h"
 #include "tools/whit/terminal.h"
@@ -30,7 +31,7 @@ struct Settings {
   bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;
   bool cat = false, toply = false;
   int verbosity = 0, min_log_level = 0;
-  std::string log_dir, traversal = "robust", half_or_float = "half";
+  std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
   std::string command_line;
 };
 
@@ -71,7 +72,7 @@ void declare(CLI::App& app, Settings& s) {
   app.add_option("--type", s.half_or_float, "Numbers of an .exr: half or float")
       ->check(CLI::IsMember({"half", "float"}));
   app.add_option("--traversal", s.traversal, "robust (watertight) or fast")->check(CLI::IsMember({"robust", "fast"}));
-  app.add_option("--texture-memory", s.texture_memory, "MiB of decoded textures at most")->check(CLI::PositiveNumber);
+  app.add_option("--texture-memory", s.texture_memory, "MiB of decoded textures at most")->check(CLI::Range(1.0, 1e9));
   app.add_flag("--quick", s.quick, "A quarter of the resolution each way, one sample per pixel");
   app.add_flag("--quiet", s.quiet, "No progress and no summary; problems are still reported");
   app.add_flag("--strict", s.strict, "Warnings are errors");
@@ -79,6 +80,7 @@ void declare(CLI::App& app, Settings& s) {
   app.add_flag("--stats", s.stats, "More figures at the end");
   app.add_flag("--cat", s.cat, "Print the scene in normal form instead of rendering");
   app.add_flag("--toply", s.toply, "The same, with large meshes written to PLY files");
+  app.add_option("--display-server", s.display_server, "Show the picture while it is made: host:port of a tev viewer");
   app.add_option("--logdir", s.log_dir, "Folder for a log file of the messages");
   app.add_option("--minloglevel", s.min_log_level, "2 and above: errors only");
   app.add_option("--v", s.verbosity, "Verbosity: 1 and above says each step");
@@ -223,13 +225,29 @@ class RenderJob {
         options.crop[2 * axis] = (p - 0.5) / n, options.crop[2 * axis + 1] = (p + 0.5) / n;
       }
     }
-    if (settings_.quiet) return render(scene, options);
+    DisplayServer viewer;
+    if (!settings_.display_server.empty()) show_in(viewer, size, options);
+    const auto finish = [&](RenderResult result) {
+      if (options.tile_done) viewer.update(result.picture.window, result.picture.rgb);
+      return result;
+    };
+    if (settings_.quiet) return finish(render(scene, options));
     Progress progress("rendering");
     options.progress = [&progress](double share) {
       progress.update(share);
       return true;
     };
-    return render(scene, options);
+    return finish(render(scene, options));
+  }
+
+  /// Previews go to the viewer while it can be reached; the render does not depend on it.
+  void show_in(DisplayServer& viewer, Vec2i size, RenderOptions& options) const {
+    if (const std::string problem = viewer.connect(settings_.display_server); !problem.empty()) {
+      say("whit: warning: " + problem);
+      return;
+    }
+    viewer.create(path_, size);
+    options.tile_done = [&viewer](const Box2i& window, std::span<const float> rgb) { viewer.update(window, rgb); };
   }
 
   std::vector<OutputMetadata> metadata(const Scene& scene, const RenderResult& result) const {
