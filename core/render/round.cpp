@@ -358,26 +358,28 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
        Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z))) *
       6e-7f;
   const float back = std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
-  for_lanes(samples.n, [&](int i) {
-    const float root = safe_sqrt(samples.u[i]);
-    const float b0 = 1 - root, b1 = samples.v[i] * root, b2 = 1 - b0 - b1;
+  const LightSamples out = samples;
+  for_lanes(samples.n, [=](int i) {
+    const float root = safe_sqrt(out.u[i]);
+    const float b0 = 1 - root, b1 = out.v[i] * root, b2 = 1 - b0 - b1;
     const Vec3f q = a * b0 + b * b1 + c * b2;
     // The front is where a ray that hits sees it (mesh_surfaces): flipped, then turned to the flipped shading normal.
     const Vec3f interpolated = (na * b0 + nb * b1 + nc * b2) * flip;
     Vec3f front = n * flip;
     const bool turned = has_normals & (dot(front, interpolated) < 0);
-    front = turned ? -front : front;
-    const Vec3f to = q - samples.p[i];
+    const float side = turned ? -1.0f : 1.0f;
+    front = front * side;
+    const Vec3f to = q - out.p[i];
     const float squared = dot(to, to);
     const float distance = std::sqrt(squared);
     const float inverse = squared > 0 ? 1 / distance : 0.0f;
     const Vec3f wi = to * inverse;
     const float cosine = -dot(front, wi);
-    const bool lit = (two_sided ? cosine != 0 : cosine > 0) & (squared > 0);
+    const bool lit = ((cosine > 0) | (two_sided & (cosine < 0))) & (squared > 0);
     const float geometry = lit ? std::abs(cosine) * area / squared : 0.0f;
-    samples.wi.set(i, wi);
-    samples.distance[i] = in_front(distance, back, cosine);
-    samples.radiance.set(i, {radiance.x * geometry, radiance.y * geometry, radiance.z * geometry});
+    out.wi.set(i, wi);
+    out.distance[i] = in_front(distance, back, cosine);
+    out.radiance.set(i, {radiance.x * geometry, radiance.y * geometry, radiance.z * geometry});
   });
 }
 
@@ -389,7 +391,7 @@ void Round::sample_analytic(const SceneLight& light, const LightSamples& samples
   const bool two_sided = light.two_sided;
   for_lanes(samples.n, [&](int i) {
     const float cosine = cosines[i], distance = samples.distance[i];
-    const bool lit = (pdfs[i] > 0) & (two_sided ? cosine != 0 : cosine > 0);
+    const bool lit = (pdfs[i] > 0) & ((cosine > 0) | (two_sided & (cosine < 0)));
     const float weight = lit ? 1 / pdfs[i] : 0.0f;
     samples.radiance.set(i, {radiance.x * weight, radiance.y * weight, radiance.z * weight});
     const Vec3f q = samples.p[i] + samples.wi[i] * distance;
