@@ -15,9 +15,7 @@ int check_command(const Arguments& args) {
   if (scenes.empty()) scenes.push_back("-");
   for (const std::string& path : scenes) {
     Sources sources;
-    LoadedFile file = load_file(sources, path);
-    Diagnostics all = file.parsed.diagnostics;
-    for (const SceneDescription& world : file.parsed.scenes) plan_scene(world, sources, all);
+    const Diagnostics all = all_problems(load_file(sources, path), sources);
     print_diagnostics(sources, all);
     if (!all.all().empty()) code = kNo;
   }

@@ -1,5 +1,6 @@
 #include "tools/whit/load.h"
 
+#include <algorithm>
 #include <chrono>
 #include <iostream>
 #include <iterator>
@@ -42,6 +43,20 @@ PlannedScene plan_scene(const SceneDescription& description, const Sources& sour
   out.plan = plan_effects(out.bound);
   out.seconds = since(start);
   return out;
+}
+
+Diagnostics all_problems(const LoadedFile& file, const Sources& sources) {
+  Diagnostics all = file.parsed.diagnostics;
+  Diagnostics planning;
+  for (const SceneDescription& world : file.parsed.scenes) plan_scene(world, sources, planning);
+  for (const Diagnostic& d : planning.all()) {
+    // One place, one message: the parser has said what is wrong there, planning only met the consequence.
+    const auto same_place = [&](const Diagnostic& o) {
+      return o.where.known() && o.where.file == d.where.file && o.where.offset == d.where.offset;
+    };
+    if (std::none_of(all.all().begin(), all.all().end(), same_place)) all.add(d);
+  }
+  return all;
 }
 
 }  // namespace whit

@@ -24,4 +24,8 @@ struct PlannedScene {
 };
 PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics);
 
+/// Everything wrong with a file: what parsing found, and what planning its worlds finds in addition. For files with
+/// mistakes, where nothing else will be done with the worlds.
+Diagnostics all_problems(const LoadedFile& file, const Sources& sources);
+
 }  // namespace whit

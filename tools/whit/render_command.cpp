@@ -115,9 +115,11 @@ class RenderJob {
   int run() {
     LoadedFile file = load_file(sources_, path_);
     times_.parse = file.parse_seconds;
-    if (int code = report(file.parsed.diagnostics); code != kDone) return code;
+    // A file with mistakes is reported whole: also what planning would have said of it.
+    const bool mistaken = file.parsed.diagnostics.has_errors();
+    const Diagnostics found = mistaken ? all_problems(file, sources_) : file.parsed.diagnostics;
+    if (int code = report(found); code != kDone) return code;
     if (file.parsed.scenes.empty()) return kSceneError;
-    // A file with errors has been reported whole: also what planning and building would have said of it.
     int worst = kDone;
     for (const SceneDescription& world : file.parsed.scenes) {
       const int code = render_world(world);
