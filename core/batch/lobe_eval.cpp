@@ -1,102 +1,36 @@
 #include "core/batch/lobe_eval.h"
 
+#include "core/batch/lobe_disney.h"
 #include "core/batch/lobe_formulas.h"
+#include "core/batch/lobe_fourier.h"
+#include "core/batch/lobe_hair.h"
+#include "core/batch/lobe_microfacet.h"
+#include "core/batch/lobe_pair.h"
 
 namespace whit {
 
 namespace {
 
-/// One pair of directions at one point.
-struct Pair {
-  Vec3f wo, wi, n;
-  float zo, zi;               ///< Cosines to the shading normal, signed.
-  float reflects, transmits;  ///< 1 or 0: which lobes the geometric normal allows.
+/// The angle-dependent factors of Ashikhmin and Shirley's blend, times |cos_i|: of Rd (1 - Rs), of the coat, and how
+/// far the coat's Rs has risen to 1 at the facet.
+struct Blend {
+  float diffuse, coat, schlick;
 };
 
-inline Pair make_pair(const ShadingBatch& s, const Vec3Lanes& wi_lanes, int i) {
-  const Vec3f wo = s.wo[i], wi = wi_lanes[i], ng = s.ng[i], n = s.ns[i];
-  const float zo = dot(wo, n), zi = dot(wi, n);
-  const bool same_side = dot(wi, ng) * dot(wo, ng) > 0;
-  const float on = zo != 0 ? 1.0f : 0.0f;
-  return {wo, wi, n, zo, zi, same_side ? on : 0.0f, same_side ? 0.0f : on};
-}
-
-inline void accumulate(const RGBLanes& out, int i, const RGBLanes& weight, float f) {
-  out.r[i] += weight.r[i] * f;
-  out.g[i] += weight.g[i] * f;
-  out.b[i] += weight.b[i] * f;
-}
-
-/// Squared length of the part of w across n, for unit vectors, without cancellation where w is near n.
-inline float across2(const Vec3f& w, const Vec3f& n) {
-  const Vec3f t = cross(w, n);
-  return dot(t, t);
-}
-
-/// A Trowbridge-Reitz distribution with equal alphas: needs no tangents.
-struct Isotropic {
-  float alpha;
-  float alpha_xy() const { return alpha * alpha; }
-  float e(const Vec3f& h, float z, const Vec3f& n) const { return z * z + across2(h, n) / (alpha * alpha); }
-  float smith(const Vec3f& /*w*/, float z) const {
-    return smith_term(std::abs(z), alpha * alpha * max_of(1 - z * z, 0.0f));
-  }
-};
-
-struct Anisotropic {
-  float ax, ay;
-  Vec3f ss, ts;
-  float alpha_xy() const { return ax * ay; }
-  float e(const Vec3f& h, float z, const Vec3f& /*n*/) const {
-    const float x = dot(h, ss) / ax, y = dot(h, ts) / ay;
-    return z * z + x * x + y * y;
-  }
-  float smith(const Vec3f& w, float z) const {
-    const float x = dot(w, ss) * ax, y = dot(w, ts) * ay;
-    return smith_term(std::abs(z), x * x + y * y);
-  }
-};
-
-/// s_o c_i + s_i c_o, see smith_term(); never 0, so that a division by it is safe.
+/// Ashikhmin and Shirley, An Anisotropic Phong BRDF Model, 2000, with a Trowbridge-Reitz distribution as pbrt-v3 has
+/// it; PBR book 8.5. Their max(cos_i, cos_o) takes the place of a masking term.
 template <class Distribution>
-inline float smith_sum(const Distribution& d, const Pair& p) {
-  const float sum = d.smith(p.wo, p.zo) * std::abs(p.zi) + d.smith(p.wi, p.zi) * std::abs(p.zo);
-  return sum > 0 ? sum : 1.0f;
-}
-
-/// Torrance-Sparrow reflection times |cos_i|, for weight 1. Torrance and Sparrow 1967; PBR book 8.4.4.
-template <class Distribution>
-inline float microfacet_reflection(const Distribution& d, const Pair& p, FresnelType fresnel, float eta) {
+inline Blend fresnel_blend(const Distribution& d, const Pair& p) {
+  const float ci = std::abs(p.zi), co = std::abs(p.zo);
+  const float diffuse = 28 / (23 * kPi) * (1 - schlick_weight(0.5f * ci)) * (1 - schlick_weight(0.5f * co));
   const Vec3f h = normalize(p.wo + p.wi);
-  const float z = dot(h, p.n);
-  // The facet is seen from the side of the normal, so that the sign of its angle tells inside from outside.
-  const float cos_facet = dot(p.wi, h) * (z < 0 ? -1.0f : 1.0f);
-  const float f = fresnel == FresnelType::One ? 1.0f : fresnel_dielectric(cos_facet, eta);
-  const float e = d.e(h, z, p.n);
+  // Opposite grazing directions have a coat without bound; the cosine is not known better than 1e-7 anyway.
+  const float ih = clamp_to(dot(p.wi, h), 1e-7f, 1.0f);
+  const float e = d.e(h, dot(h, p.n), p.n);
   const float density = trowbridge_reitz(e > 0 ? e : 1.0f, d.alpha_xy());
-  const float value = density * f * std::abs(p.zi) / (2 * smith_sum(d, p));
-  return e > 0 && p.zi != 0 ? value * p.reflects : 0.0f;
-}
-
-/// Refraction by microfacets times |cos_i|, for weight 1, radiance. Walter et al. 2007, equation 21; their
-/// eta^2 and radiance's 1 / eta^2 cancel, and the denominator is the squared length of the unnormalised half
-/// vector.
-template <class Distribution>
-inline float microfacet_transmission(const Distribution& d, const Pair& p, float eta) {
-  const float n = relative_index(p.zo, eta);
-  const Vec3f sum = p.wo + p.wi * n;
-  const float length2 = dot(sum, sum);
-  const Vec3f half = normalize(sum);
-  const float side = dot(half, p.n) < 0 ? -1.0f : 1.0f;
-  const Vec3f h = half * side;
-  const float oh = dot(p.wo, h), ih = dot(p.wi, h), z = dot(h, p.n);
-  const float e = d.e(h, z, p.n);
-  const float density = trowbridge_reitz(e > 0 ? e : 1.0f, d.alpha_xy());
-  const float value = (1 - fresnel_dielectric(oh, eta)) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) /
-                      (smith_sum(d, p) * (length2 > 0 ? length2 : 1.0f));
-  // Both cosines of a facet that refracts have different signs, and so have those of the surface. Facets seen
-  // from behind are not excluded, as they are not in pbrt-v3: only very rough glass has any.
-  return e > 0 && p.zo * p.zi < 0 && oh * ih <= 0 ? value * p.transmits : 0.0f;
+  const float larger = max_of(ci, co);
+  const float coat = e > 0 && larger > 0 ? density * (ci / larger) / (4 * ih) : 0.0f;
+  return {diffuse * ci * p.reflects, coat * p.reflects, schlick_weight(ih)};
 }
 
 void add_lambert(const Lobe& lobe, const ShadingBatch& s, const Vec3Lanes& wi, const RGBLanes& out) {
@@ -129,8 +63,36 @@ void for_distribution(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& 
   }
 }
 
+void add_fresnel_blend(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
+                       const RGBLanes& out) {
+  const RGBLanes rd = lobe.colour1, rs = lobe.colour2;
+  for_distribution(lobe, s, frame, wi, [&](int i, const Pair& p, const auto& d) {
+    const Blend b = fresnel_blend(d, p);
+    const auto add = [&](float* to, float weight, float diffuse, float coat) {
+      to[i] += weight * (diffuse * (1 - coat) * b.diffuse + (coat + b.schlick * (1 - coat)) * b.coat);
+    };
+    add(out.r, lobe.weight.r[i], rd.r[i], rs.r[i]);
+    add(out.g, lobe.weight.g[i], rd.g[i], rs.g[i]);
+    add(out.b, lobe.weight.b[i], rd.b[i], rs.b[i]);
+  });
+}
+
+/// Microfacets of a metal: the reflectance of a facet is coloured.
+void add_metal(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
+               const RGBLanes& out) {
+  const RGBLanes eta = lobe.colour1, k = lobe.colour2;
+  for_distribution(lobe, s, frame, wi, [&](int i, const Pair& p, const auto& d) {
+    const float f = microfacet_reflection(d, p, FresnelType::One, 1.0f);
+    const float c = dot(p.wi, normalize(p.wo + p.wi));
+    out.r[i] += lobe.weight.r[i] * f * fresnel_conductor(c, eta.r[i], k.r[i]);
+    out.g[i] += lobe.weight.g[i] * f * fresnel_conductor(c, eta.g[i], k.g[i]);
+    out.b[i] += lobe.weight.b[i] * f * fresnel_conductor(c, eta.b[i], k.b[i]);
+  });
+}
+
 void add_microfacet_reflection(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
                                const RGBLanes& out) {
+  if (lobe.fresnel == FresnelType::Conductor) return add_metal(lobe, s, frame, wi, out);
   if (lobe.fresnel == FresnelType::One) {
     for_distribution(lobe, s, frame, wi, [&](int i, const Pair& p, const auto& d) {
       accumulate(out, i, lobe.weight, microfacet_reflection(d, p, FresnelType::One, 1.0f));
@@ -173,9 +135,10 @@ void eval_plastic(const LobeSet& set, const ShadingBatch& s, const Vec3Lanes& wi
 bool needs_frame(const LobeSet& set) {
   for (int k = 0; k < set.count; ++k) {
     const Lobe& lobe = set.lobes[k];
-    const bool microfacet =
-        lobe.type == LobeType::MicrofacetReflection || lobe.type == LobeType::MicrofacetTransmission;
-    if (microfacet && lobe.a != lobe.b) return true;
+    const bool microfacet = lobe.type == LobeType::MicrofacetReflection ||
+                            lobe.type == LobeType::MicrofacetTransmission || lobe.type == LobeType::FresnelBlend ||
+                            lobe.type == LobeType::DisneyReflection || lobe.type == LobeType::DisneyTransmission;
+    if ((microfacet && lobe.a != lobe.b) || lobe.type == LobeType::Hair) return true;
   }
   return false;
 }
@@ -211,6 +174,16 @@ void eval_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& fram
       case LobeType::OrenNayar: add_oren_nayar(lobe, s, wi, out); break;
       case LobeType::MicrofacetReflection: add_microfacet_reflection(lobe, s, frame, wi, out); break;
       case LobeType::MicrofacetTransmission: add_microfacet_transmission(lobe, s, frame, wi, out); break;
+      case LobeType::FresnelBlend: add_fresnel_blend(lobe, s, frame, wi, out); break;
+      case LobeType::DisneyDiffuse:
+      case LobeType::DisneyFakeSubsurface:
+      case LobeType::DisneyRetro:
+      case LobeType::DisneySheen:
+      case LobeType::DisneyClearcoat:
+      case LobeType::DisneyReflection:
+      case LobeType::DisneyTransmission: add_disney(lobe, s, frame, wi, out); break;
+      case LobeType::Hair: add_hair(lobe, s, frame, wi, out); break;
+      case LobeType::Fourier: add_fourier(lobe, s, wi, out); break;
       case LobeType::SpecularReflection:
       case LobeType::SpecularTransmission: break;  // no pair of given directions meets a delta
     }

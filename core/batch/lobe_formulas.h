@@ -43,6 +43,32 @@ inline float fresnel_dielectric(float cos_i, float eta) {
   return eta == 1 ? 0.0f : refracted;
 }
 
+/// Unpolarised Fresnel reflectance in [0, 1] of the boundary to a metal of relative index eta + i k, the same from
+/// both sides. With g = n cos_t = a + i b, a^2 - b^2 = eta^2 - k^2 - sin^2 and a b = eta k; the reflectances are
+/// written as quotients of sums of squares, and the smaller of a and b comes from their product: nothing cancels.
+inline float fresnel_conductor(float cos_i, float eta, float k) {
+  const float c = min_of(std::abs(cos_i), 1.0f);
+  const float s2 = (1 - c) * (1 + c);
+  const float difference = (eta - 1) * (eta + 1) - k * k + c * c, product = std::abs(eta * k);
+  const float modulus = std::sqrt(difference * difference + 4 * product * product);
+  const float larger = std::sqrt(0.5f * (modulus + std::abs(difference)));
+  const float smaller = larger > 0 ? product / larger : 0.0f;
+  const float a = difference > 0 ? larger : smaller, b = difference > 0 ? smaller : larger;
+  const float below = (a + c) * (a + c) + b * b;
+  const float perpendicular = ((a - c) * (a - c) + b * b) / (below > 0 ? below : 1.0f);
+  const float ca = c * a, cb = c * b;
+  const float below_p = (ca + s2) * (ca + s2) + cb * cb;
+  const float ratio = ((ca - s2) * (ca - s2) + cb * cb) / (below_p > 0 ? below_p : 1.0f);
+  // Where both indices are 0 everything is reflected; so it is at the grazing angle, by the formula.
+  return below > 0 && below_p > 0 ? 0.5f * perpendicular * (1 + ratio) : 1.0f;
+}
+
+/// (1 - x)^5, Schlick's angular dependence.
+inline float schlick_weight(float x) {
+  const float m = 1 - x, m2 = m * m;
+  return m2 * m2 * m;
+}
+
 /// pbrt-v3's map from a user's roughness in [0, 1] to the Trowbridge-Reitz alpha (a fit by its authors).
 inline float roughness_to_alpha(float roughness) {
   const float x = log_of(max_of(roughness, 1e-3f));

@@ -1,7 +1,10 @@
 // Importance sampling of the non-specular lobes. Plain scalar code, lane by lane: the Whitted integrator
 // samples lights and delta lobes only.
+#include "core/batch/lobe_disney.h"
 #include "core/batch/lobe_eval.h"
 #include "core/batch/lobe_formulas.h"
+#include "core/batch/lobe_fourier.h"
+#include "core/batch/lobe_hair.h"
 
 namespace whit {
 
@@ -73,9 +76,20 @@ float lobe_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
   const float cosine = std::abs(wi.z) * kInvPi;
   switch (lobe.type) {
     case LobeType::LambertReflection:
+    case LobeType::DisneyDiffuse:
+    case LobeType::DisneyFakeSubsurface:
+    case LobeType::DisneyRetro:
+    case LobeType::DisneySheen:
     case LobeType::OrenNayar: return wo.z * wi.z > 0 ? cosine : 0.0f;
     case LobeType::LambertTransmission: return wo.z * wi.z < 0 ? cosine : 0.0f;
+    case LobeType::DisneyReflection:
     case LobeType::MicrofacetReflection: return reflection_pdf(wo, wi, lobe.a[i], lobe.b[i]);
+    case LobeType::FresnelBlend:
+      return wo.z * wi.z > 0 ? 0.5f * (cosine + reflection_pdf(wo, wi, lobe.a[i], lobe.b[i])) : 0.0f;
+    case LobeType::DisneyClearcoat: return clearcoat_pdf(lobe.a[i], wo, wi);
+    case LobeType::Hair: return hair_pdf(lobe, i, wo, wi);
+    case LobeType::Fourier: return fourier_pdf(*lobe.table, wo, wi);
+    case LobeType::DisneyTransmission:
     case LobeType::MicrofacetTransmission: return transmission_pdf(wo, wi, lobe.a[i], lobe.b[i], lobe.eta[i]);
     case LobeType::SpecularReflection:
     case LobeType::SpecularTransmission: break;
@@ -113,6 +127,10 @@ Vec3f sample_lobe(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
   const float side = wo.z < 0 ? -1.0f : 1.0f;
   switch (lobe.type) {
     case LobeType::LambertReflection:
+    case LobeType::DisneyDiffuse:
+    case LobeType::DisneyFakeSubsurface:
+    case LobeType::DisneyRetro:
+    case LobeType::DisneySheen:
     case LobeType::OrenNayar: {
       const Vec3f w = cosine_hemisphere(u, v);
       return {w.x, w.y, w.z * side};
@@ -121,11 +139,26 @@ Vec3f sample_lobe(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
       const Vec3f w = cosine_hemisphere(u, v);
       return {w.x, w.y, -w.z * side};
     }
+    case LobeType::FresnelBlend: {
+      // Half of the samples for the diffuse part, half for the coat, whose first number is stretched again.
+      if (u < 0.5f) {
+        const Vec3f w = cosine_hemisphere(2 * u, v);
+        return {w.x, w.y, w.z * side};
+      }
+      const Vec3f h = sample_visible_normal(wo, lobe.a[i], lobe.b[i], 2 * u - 1, v);
+      const Vec3f wi = h * (2 * dot(wo, h)) - wo;
+      return wi.z * wo.z > 0 ? wi : Vec3f(0, 0, 0);
+    }
+    case LobeType::DisneyReflection:
     case LobeType::MicrofacetReflection: {
       const Vec3f h = sample_visible_normal(wo, lobe.a[i], lobe.b[i], u, v);
       const Vec3f wi = h * (2 * dot(wo, h)) - wo;
       return wi.z * wo.z > 0 ? wi : Vec3f(0, 0, 0);
     }
+    case LobeType::DisneyClearcoat: return sample_clearcoat(lobe.a[i], wo, u, v);
+    case LobeType::Hair: return sample_hair(lobe, i, wo, u, v);
+    case LobeType::Fourier: return sample_fourier(*lobe.table, wo, u, v);
+    case LobeType::DisneyTransmission:
     case LobeType::MicrofacetTransmission: {
       const Vec3f h = sample_visible_normal(wo, lobe.a[i], lobe.b[i], u, v);
       const Vec3f wi = refract_at(wo, h, relative_index(wo.z, lobe.eta[i]));
@@ -139,12 +172,13 @@ Vec3f sample_lobe(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
 
 /// Samples one lane; the zero vector when no direction comes out.
 Vec3f sample_lane(const LobeSet& set, int i, const Vec3f& wo, float lobe_u, float u, float v) {
-  int active[LobeSet::kMax], count = 0;
-  for (int k = 0; k < set.count; ++k)
-    if (is_active(set.lobes[k], i)) active[count++] = k;
+  int count = 0;
+  for (int k = 0; k < set.count; ++k) count += is_active(set.lobes[k], i);
   if (count == 0 || wo.z == 0) return {0, 0, 0};
-  const int chosen = static_cast<int>(min_of(lobe_u * static_cast<float>(count), static_cast<float>(count - 1)));
-  return sample_lobe(set.lobes[active[chosen]], i, wo, u, v);
+  int chosen = static_cast<int>(min_of(lobe_u * static_cast<float>(count), static_cast<float>(count - 1)));
+  int k = 0;
+  while (!is_active(set.lobes[k], i) || chosen-- > 0) ++k;
+  return sample_lobe(set.lobes[k], i, wo, u, v);
 }
 
 }  // namespace

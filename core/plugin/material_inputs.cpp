@@ -21,6 +21,24 @@ float* alphas(const Tex<float>& roughness, bool remap, const ShadingBatch& s) {
   return out;
 }
 
+void set_alphas(Lobe& lobe, const Tex<float>& u, const Tex<float>& v, bool remap, const ShadingBatch& s) {
+  const bool same = u.texture() == v.texture() && (u.texture() || u.value() == v.value());
+  lobe.a = alphas(u, remap, s);
+  lobe.b = same ? lobe.a : alphas(v, remap, s);
+}
+
+RGBLanes product(const ShadingBatch& s, const RGBLanes& a, const RGBLanes& b) {
+  const RGBLanes out = s.arena->rgb(s.n);
+  for_lanes(s.n, [&](int i) { out.r[i] = a.r[i] * b.r[i], out.g[i] = a.g[i] * b.g[i], out.b[i] = a.b[i] * b.b[i]; });
+  return out;
+}
+
+RGBLanes one_minus(const ShadingBatch& s, const RGBLanes& share) {
+  const RGBLanes out = s.arena->rgb(s.n);
+  for_lanes(s.n, [&](int i) { out.r[i] = 1 - share.r[i], out.g[i] = 1 - share.g[i], out.b[i] = 1 - share.b[i]; });
+  return clamp0(s.n, out);
+}
+
 float* indices(const Tex<float>& index, const ShadingBatch& s) {
   float* const out = index(s);
   for_lanes(s.n, [&](int i) { out[i] = clamp_to(out[i], 1e-3f, 1e3f); });

@@ -371,6 +371,36 @@ struct Kind<Tex<float>> {
 };
 
 template <>
+struct Kind<std::optional<Tex<float>>> {
+  static constexpr const char* name = Kind<Tex<float>>::name;
+  static constexpr ParamType accepts[] = {ParamType::Float, ParamType::Texture};
+  static std::string text(const std::optional<Tex<float>>& v) { return v ? Kind<Tex<float>>::text(*v) : std::string(); }
+  static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<float>>& out) {
+    Tex<float> v;
+    const size_t count = p.type == ParamType::Texture ? p.textures().size() : p.numbers().size();
+    if (!Kind<Tex<float>>::read(p, ctx, range, v)) return false;
+    if (count == 1) out = v;
+    return true;
+  }
+};
+
+/// The name of a material.
+template <>
+struct Kind<std::shared_ptr<Material>> {
+  static constexpr const char* name = "string";
+  static constexpr ParamType accepts[] = {ParamType::String};
+  static std::string text(const std::shared_ptr<Material>&) { return {}; }
+  static bool read(const Parameter& p, const BindContext& ctx, const Range&, std::shared_ptr<Material>& out) {
+    const auto& v = p.strings();
+    if (const Count count = count_values(p, ctx, v.size()); count != Count::One) return count == Count::Several;
+    out = ctx.named_material ? ctx.named_material(v[0]) : nullptr;
+    if (out) return true;
+    return fail(ctx, ctx.at(p), called(p, ctx) + " names a material that is not there: \"" + v[0] + '"',
+                "a named material must be made, without errors, before it is used");
+  }
+};
+
+template <>
 struct Kind<Tex<RGB>> {
   static constexpr const char* name = "spectrum texture";
   static constexpr ParamType accepts[] = {ParamType::Rgb, ParamType::Xyz, ParamType::Blackbody, ParamType::Spectrum,
@@ -382,6 +412,21 @@ struct Kind<Tex<RGB>> {
     const bool ok = read_colour(p, ctx, range, v);
     if (ok) out = Tex<RGB>(v);
     return ok;
+  }
+};
+
+template <>
+struct Kind<std::optional<Tex<RGB>>> {
+  static constexpr const char* name = Kind<Tex<RGB>>::name;
+  static constexpr auto& accepts = Kind<Tex<RGB>>::accepts;
+  static std::string text(const std::optional<Tex<RGB>>& v) { return v ? Kind<Tex<RGB>>::text(*v) : std::string(); }
+  static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<RGB>>& out) {
+    // No value can be negative infinity: if it still is, the parameter came without one.
+    const RGB none(-std::numeric_limits<float>::infinity());
+    Tex<RGB> v(none);
+    if (!Kind<Tex<RGB>>::read(p, ctx, range, v)) return false;
+    if (!v.is_constant() || v.value() != none) out = v;
+    return true;
   }
 };
 
@@ -442,6 +487,9 @@ template struct Binding<Point>;
 template struct Binding<Vector>;
 template struct Binding<Tex<float>>;
 template struct Binding<Tex<RGB>>;
+template struct Binding<std::optional<Tex<float>>>;
+template struct Binding<std::optional<Tex<RGB>>>;
+template struct Binding<std::shared_ptr<Material>>;
 template struct Binding<FloatList>;
 template struct Binding<IntegerList>;
 template struct Binding<Point2List>;

@@ -3,7 +3,8 @@
 //   param(&Matte::sigma, "sigma", 0.0f, Unit::Degrees, "Oren-Nayar roughness; 0 is Lambertian.")
 //
 // The type of the parameter in a scene file is inferred from the member: float, int, bool, std::string, RGB,
-// Point, Vector, Choice, FileName, lists of them as spans, and Tex<float>, Tex<RGB> for texturable ones.
+// Point, Vector, Choice, FileName, lists of them as spans, Tex<float>, Tex<RGB> for texturable ones, and
+// std::shared_ptr<Material> for the name of a material.
 #pragma once
 
 #include <functional>

@@ -208,10 +208,8 @@ void Round::shade_runs() {
   for (int first = 0, last; first < hits_.n; first = last) {
     last = first + 1;
     while (last < hits_.n && material_of(last) == material_of(first)) ++last;
-    runs_.emplace_back();
+    runs_.push_back({points_.range(first, last - first), LobeSet(arena_), {}, first});
     Run& run = runs_.back();
-    run.first = first;
-    run.points = points_.range(first, last - first);
     const Material& material = *scene_.materials[static_cast<size_t>(material_of(first))];
     if (!material.bump.is_constant()) apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
     material.lobes(run.points, run.lobes);

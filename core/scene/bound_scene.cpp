@@ -83,7 +83,9 @@ class Binder {
     bound.where = entity.where;
     std::shared_ptr<Plugin> plugin(info.make());
     BindContext ctx = context(entity, info.name, &bound.textures);
-    ctx.named_material = [this, &entity](const std::string& name) { return named_material(entity, name); };
+    ctx.named_material = [this, &entity, &bound](const std::string& name) {
+      return named_material(entity, name, &bound.materials);
+    };
     const bool good = bind_parameters(info, *plugin, params, ctx, also_known);
     const size_t before = diagnostics_.all().size();
     if (good) plugin->check(diagnostics_, entity.where);
@@ -97,7 +99,7 @@ class Binder {
   template <class T>
   Bound<T> bind_entity(const Entity& entity, const std::string& category, const Unknown& unknown) {
     const PluginInfo* info = find(entity, category, unknown);
-    if (!info) return Bound<T>{nullptr, entity.where, {}};
+    if (!info) return Bound<T>{nullptr, entity.where, {}, {}};
     // A fallback plugin does not know the parameters of the one that was meant.
     static const ParameterList none;
     const bool meant = info == find_plugin(category, entity.plugin);
@@ -136,7 +138,7 @@ class Binder {
   void bind_sampler() {
     const Entity& entity = description_.sampler;
     if (entity.plugin.empty() || find_plugin("sampler", entity.plugin)) {
-      scene_.sampler = bind_option<Sampler>(entity, "sampler", "halton", {});
+      scene_.sampler = bind_option<Sampler>(entity, "sampler", "sobol", {});
       return;
     }
     const PluginInfo* halton =
@@ -180,10 +182,11 @@ class Binder {
     }
   }
 
-  std::shared_ptr<Material> named_material(const Entity& entity, const std::string& name) {
+  std::shared_ptr<Material> named_material(const Entity& entity, const std::string& name, std::vector<int>* used) {
     const auto* description = static_cast<const MaterialDescription*>(&entity);
     for (const auto& [known, index] : description->named) {
       if (known == name && static_cast<size_t>(index) < scene_.materials.size()) {
+        used->push_back(index);
         return scene_.materials[static_cast<size_t>(index)].plugin;
       }
     }
@@ -194,7 +197,7 @@ class Binder {
     scene_.shape_material.push_back(shape.material);
     const PluginInfo* info = find(shape, "shape", {Severity::Warning, nullptr, "the shape is left out"});
     if (!info) {
-      scene_.shapes.push_back({nullptr, shape.where, {}});
+      scene_.shapes.push_back({nullptr, shape.where, {}, {}});
       return;
     }
     const auto& material = description_.materials[static_cast<size_t>(shape.material)];

@@ -18,12 +18,14 @@
 
 namespace whit {
 
-/// A plugin made by a statement, and the textures (indices into SceneDescription::textures) it refers to.
+/// A plugin made by a statement, and what it refers to: textures (indices into SceneDescription::textures) and
+/// named materials (indices into BoundScene::materials).
 template <class T>
 struct Bound {
   std::shared_ptr<T> plugin;  ///< Null when the statement is unusable (reported).
   SourcePos where;
   std::vector<int> textures;
+  std::vector<int> materials;
 };
 
 struct BoundScene {

@@ -87,9 +87,7 @@ class Planner {
     call_for(material.plugin->effects(), material.where, "material");
     visit_textures(material.textures);
     if (!material.plugin->bump.is_constant()) call_for({Effect::Bump}, material.where, "bumpmap");
-    if (m < description_.materials.size()) {
-      for (const auto& named : description_.materials[m].named) visit_material(named.second);
-    }
+    for (const int member : material.materials) visit_material(member);
   }
 
   void visit_light(size_t i) {

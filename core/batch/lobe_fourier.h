@@ -1,0 +1,41 @@
+// A tabulated BSDF: for pairs of zenith cosines, the coefficients of a cosine series in the azimuth between the
+// directions. Jakob et al., A Comprehensive Framework for Rendering Layered Materials, 2014; PBR book, 3rd ed., 8.6
+// and 14.1.4. The tables come from Jakob's layerlab.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/batch/lobe_eval.h"
+
+namespace whit {
+
+/// A table over n x n pairs of cosines, [o * n + i]. i is the direction light travels in (-wi), o that of wo.
+struct FourierTable {
+  float eta = 1;                 ///< Index inside over that outside.
+  int channels = 1;              ///< 1: luminance; 3: luminance, red, blue.
+  int max_order = 0;             ///< The longest series.
+  std::vector<float> mu;         ///< The n cosines, increasing, in [-1, 1].
+  std::vector<int32_t> first;    ///< Where the coefficients of a pair start; those of further channels follow.
+  std::vector<int32_t> order;    ///< Their number in one channel.
+  std::vector<float> a;          ///< f |cos| = sum over k of a[k] cos(k phi).
+  std::vector<float> mean;       ///< a[0] of the first channel, 0 where there is no series.
+  std::vector<float> integrals;  ///< Of `mean` from the first to the i-th cosine.
+
+  int size() const { return static_cast<int>(mu.size()); }
+  size_t at(int o, int i) const { return static_cast<size_t>(o) * mu.size() + static_cast<size_t>(i); }
+};
+
+/// Reads the content of a bsdf file ("SCATFUN", version 1). Returns what is wrong with it, "" when nothing is.
+std::string parse_fourier_table(std::string_view bytes, FourierTable& table);
+
+/// Adds the lobe to `out`, times |wi . ns|, as eval_lobes() does. Both sides of the surface scatter.
+void add_fourier(const Lobe& lobe, const ShadingBatch& s, const Vec3Lanes& wi, const RGBLanes& out);
+
+/// The density with which sample_fourier() finds wi; both in the local frame.
+float fourier_pdf(const FourierTable& table, const Vec3f& wo, const Vec3f& wi);
+/// The zero vector when no direction comes out.
+Vec3f sample_fourier(const FourierTable& table, const Vec3f& wo, float u, float v);
+
+}  // namespace whit

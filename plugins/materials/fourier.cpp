@@ -1,0 +1,57 @@
+// A measured or simulated BSDF from a file: a cosine series in the azimuth for every pair of zenith angles. Jakob et
+// al., A Comprehensive Framework for Rendering Layered Materials, 2014; see core/batch/lobe_fourier.h. Isotropic, of
+// one or three channels.
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "core/batch/lobe_fourier.h"
+#include "core/plugin/material_inputs.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+struct Fourier : Material {
+  FileName bsdffile;
+  FourierTable table;
+
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (bsdffile.empty())
+      diagnostics.error(statement, "fourier needs a \"bsdffile\"", "name a .bsdf file of layerlab's");
+  }
+
+  EffectSet effects() const override {
+    EffectSet e = effects_of(*this);
+    e.add(Effect::Glossy);
+    return e;
+  }
+
+  bool prepare(const PrepareContext& context) override {
+    if (bsdffile.empty()) return true;  // reported by check()
+    std::ifstream file(bsdffile.path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const std::string problem = file.bad() || !file.is_open() ? "cannot be read" : parse_fourier_table(bytes, table);
+    if (problem.empty()) return true;
+    context.diagnostics->file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
+    return false;
+  }
+
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (table.max_order == 0) return;
+    Lobe lobe;
+    lobe.type = LobeType::Fourier;
+    float* const one = filled(s, 1);
+    lobe.weight = {one, one, one};
+    lobe.table = &table;
+    out.add(lobe);
+  }
+};
+
+const Register<Fourier> fourier{
+    "material", "fourier", "A tabulated BSDF from a file.",
+    param(&Fourier::bsdffile, "bsdffile", Unit::None, "The file: layerlab's format, \"SCATFUN\" version 1."),
+    bumpmap_param()};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,95 @@
+// The union of the simple materials: diffuse, glossy, mirror and refraction, under an opacity that lets rays pass
+// straight on. The glossy part is Torrance-Sparrow with Trowbridge-Reitz facets. Shadow rays do not see the opacity,
+// as in pbrt-v3.
+#include <optional>
+
+#include "core/plugin/material_inputs.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+struct Uber : Material {
+  Tex<RGB> Kd, Ks, Kr, Kt, opacity;
+  Tex<float> roughness, index;
+  std::optional<Tex<float>> uroughness, vroughness, eta;
+  bool remaproughness = true;
+
+  const Tex<float>& along_u() const { return uroughness ? *uroughness : roughness; }
+  const Tex<float>& along_v() const { return vroughness ? *vroughness : along_u(); }
+  const Tex<float>& relative_index() const { return eta ? *eta : index; }
+
+  bool is_opaque() const {
+    const RGB v = opacity.value();
+    return opacity.is_constant() && v.x >= 1 && v.y >= 1 && v.z >= 1;
+  }
+
+  EffectSet effects() const override {
+    EffectSet e = effects_of(*this, Kd, Ks, Kr, Kt, opacity, along_u(), along_v(), relative_index());
+    const bool clear = is_black(opacity);
+    if (!clear && !is_black(Ks)) e.add(Effect::Glossy);
+    if (!clear && !is_black(Kr)) e.add(Effect::Mirror);
+    if (!is_opaque() || !is_black(Kt)) e.add(Effect::Refraction);
+    return e;
+  }
+
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    Lobe lobe;
+    lobe.fresnel = FresnelType::Dielectric;
+    lobe.eta = indices(relative_index(), s);
+    out.eta = lobe.eta;
+    const RGBLanes solid = weights(opacity, s);
+    if (!is_opaque()) add_passage(s, solid, lobe.eta, out);
+    if (is_black(opacity)) return;
+    add(s, lobe, LobeType::LambertReflection, Kd, solid, out);
+    set_alphas(lobe, along_u(), along_v(), remaproughness, s);
+    add(s, lobe, LobeType::MicrofacetReflection, Ks, solid, out);
+    add(s, lobe, LobeType::SpecularReflection, Kr, solid, out);
+    add(s, lobe, LobeType::SpecularTransmission, Kt, solid, out);
+  }
+
+ private:
+  static void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour, const RGBLanes& solid,
+                  LobeSet& out) {
+    if (is_black(colour)) return;
+    lobe.type = type;
+    lobe.weight = product(s, weights(colour, s), solid);
+    out.add(lobe);
+  }
+
+  /// What is not opaque lets rays on undeflected. Where there is any of it, pbrt-v3 takes the surface's index for
+  /// ray differentials as 1.
+  static void add_passage(const ShadingBatch& s, const RGBLanes& solid, const float* eta, LobeSet& out) {
+    Lobe passage;
+    passage.type = LobeType::SpecularTransmission;
+    passage.fresnel = FresnelType::Dielectric;
+    passage.eta = filled(s, 1);
+    passage.weight = one_minus(s, solid);
+    out.add(passage);
+    float* const seen = s.arena->floats(s.n);
+    const RGBLanes w = passage.weight;
+    for_lanes(s.n, [&](int i) { seen[i] = w.r[i] + w.g[i] + w.b[i] > 0 ? 1.0f : eta[i]; });
+    out.eta = seen;
+  }
+};
+
+const Register<Uber> uber{
+    "material",
+    "uber",
+    "Diffuse, glossy, mirror and refraction together, with an opacity.",
+    param(&Uber::Kd, "Kd", RGB(0.25f), Unit::None, "Diffuse reflectance."),
+    param(&Uber::Ks, "Ks", RGB(0.25f), Unit::None, "Scale of the glossy reflection."),
+    param(&Uber::Kr, "Kr", RGB(0.0f), Unit::None, "Scale of the mirror reflection."),
+    param(&Uber::Kt, "Kt", RGB(0.0f), Unit::None, "Scale of the refraction."),
+    param(&Uber::opacity, "opacity", RGB(1.0f), Unit::None, "Share of all this; the rest of a ray passes straight on."),
+    param(&Uber::roughness, "roughness", 0.1f, Unit::None, "Roughness of the glossy part; see remaproughness."),
+    param(&Uber::uroughness, "uroughness", Unit::None, "Roughness along u, instead of roughness."),
+    param(&Uber::vroughness, "vroughness", Unit::None, "Roughness along v, instead of that along u."),
+    param(&Uber::index, "index", 1.5f, Unit::None, "Index of refraction inside over that outside.", kPositive),
+    param(&Uber::eta, "eta", Unit::None, "The same as index, which it overrides.", kPositive),
+    param(&Uber::remaproughness, "remaproughness", true, Unit::None,
+          "Roughness is in 0..1 and mapped to the microfacets' alpha; otherwise it is alpha."),
+    bumpmap_param()};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,165 @@
+// Tabulated BSDFs: the file reader and its errors, interpolation, colour, scaling of radiance, densities.
+#include "core/batch/lobe_fourier.h"
+
+#include <cstring>
+
+#include "tests/batch/lobe_bench.h"
+
+namespace whit {
+namespace {
+
+using test::albedo;
+using test::Bench;
+using test::chi_squared;
+using test::direction;
+
+constexpr int kNodes = 17, kOrder = 3;
+
+/// The tabulated function: smooth and positive, so that splines follow it closely.
+double smooth_mean(double mu_o, double mu_i) { return (1.2 + 0.5 * mu_o * mu_i + 0.3 * mu_i) / (6 * M_PI); }
+double smooth(double mu_o, double mu_i, double phi) {
+  return smooth_mean(mu_o, mu_i) * (1 + 0.5 * std::cos(phi) + 0.2 * std::cos(2 * phi));
+}
+
+template <class T>
+void put(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// The content of a file that holds `smooth`, in all channels.
+std::string make_file(int channels = 1, float eta = 1) {
+  std::string bytes("SCATFUN\x01", 8);
+  const int pairs = kNodes * kNodes;
+  for (const int32_t v : {1, kNodes, pairs * kOrder * channels, kOrder, channels, 1, 0, 0, 0}) put(bytes, v);
+  put(bytes, eta);
+  for (int i = 0; i < 4; ++i) put(bytes, int32_t{0});
+  const auto mu = [](int i) { return -1 + 2.0 * i / (kNodes - 1); };
+  for (int i = 0; i < kNodes; ++i) put(bytes, static_cast<float>(mu(i)));
+  for (int k = 0; k < pairs; ++k) put(bytes, 0.0f);  // the integrals, which are not used
+  for (int k = 0; k < pairs; ++k) put(bytes, int32_t{k * kOrder * channels}), put(bytes, int32_t{kOrder});
+  for (int k = 0; k < pairs; ++k) {
+    const double mean = smooth_mean(mu(k / kNodes), mu(k % kNodes));
+    for (int c = 0; c < channels; ++c) {
+      for (const double a : {mean, 0.5 * mean, 0.2 * mean}) put(bytes, static_cast<float>(a * (1 - 0.25 * c)));
+    }
+  }
+  return bytes;
+}
+
+FourierTable make_table(int channels = 1, float eta = 1) {
+  FourierTable table;
+  EXPECT_EQ(parse_fourier_table(make_file(channels, eta), table), "");
+  return table;
+}
+
+void add_table(Bench& b, const FourierTable& table) { b.add(LobeType::Fourier).table = &table; }
+
+TEST(Fourier, InterpolatesItsTable) {
+  const FourierTable table = make_table();
+  const int n = 500;
+  Bench bench(n);
+  add_table(bench, table);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int i = 0; i < n; ++i) {
+    bench.s.wo.set(i, direction(u(random), 3 * u(random))), bench.wi.set(i, direction(u(random), 3 * u(random)));
+  }
+  bench.evaluate();
+  for (int i = 0; i < n; ++i) {
+    const Vec3f o = bench.s.wo[i], w = -bench.wi[i];
+    const double phi = std::atan2(o.y, o.x) - std::atan2(w.y, w.x);
+    EXPECT_NEAR(bench.f.r[i], smooth(o.z, w.z, phi), 1e-6);
+    EXPECT_EQ(bench.f.r[i], bench.f.g[i]);
+  }
+}
+
+TEST(Fourier, ThreeChannelsAreLuminanceRedBlue) {
+  const FourierTable table = make_table(3);
+  Bench bench(1);
+  add_table(bench, table);
+  bench.s.wo.set(0, direction(0.5, 1)), bench.wi.set(0, direction(0.7, 2));
+  bench.evaluate();
+  const double y = smooth(0.5, -0.7, 1 - 2 + M_PI), r = 0.75 * y, b = 0.5 * y;
+  EXPECT_NEAR(bench.f.r[0], r, 1e-6);
+  EXPECT_NEAR(bench.f.g[0], 1.39829 * y - 0.100913 * b - 0.297375 * r, 1e-6);
+  EXPECT_NEAR(bench.f.b[0], b, 1e-6);
+}
+
+TEST(Fourier, RadianceIsScaledThroughTheBoundary) {
+  const FourierTable plain = make_table(1, 1), glass = make_table(1, 1.5f);
+  Bench a(3), b(3);
+  add_table(a, plain), add_table(b, glass);
+  for (Bench* bench : {&a, &b}) {
+    for (int i = 0; i < 3; ++i) bench->s.wo.set(i, direction(i == 1 ? -0.6 : 0.6, 1));
+    // Seen from outside, light from inside; from inside, light from outside; reflection.
+    bench->wi.set(0, direction(-0.4, 2)), bench->wi.set(1, direction(0.4, 2)), bench->wi.set(2, direction(0.4, 2));
+    bench->evaluate();
+  }
+  EXPECT_NEAR(b.f.r[0] / a.f.r[0], 1 / 2.25, 1e-6);
+  EXPECT_NEAR(b.f.r[1] / a.f.r[1], 2.25, 1e-5);
+  EXPECT_EQ(b.f.r[2], a.f.r[2]);
+}
+
+TEST(Fourier, AlbedoIsThatOfTheTable) {
+  const FourierTable table = make_table();
+  Bench bench(1024);
+  add_table(bench, table);
+  // The integral over mu_i and phi of (1.2 + 0.5 mu_o mu_i + 0.3 mu_i) / (6 pi): 1.2 * 4 pi / (6 pi).
+  EXPECT_NEAR(albedo(bench, direction(0.4, 1)), 0.8, 1e-3);
+  EXPECT_NEAR(albedo(bench, direction(-0.9, 1)), 0.8, 1e-3);
+}
+
+TEST(Fourier, SamplingMatchesItsDensity) {
+  const FourierTable table = make_table();
+  for (const double cosine : {0.95, 0.3, -0.6}) {
+    Bench bench(4096);
+    add_table(bench, table);
+    chi_squared(bench, direction(cosine, 2), "fourier");
+  }
+}
+
+TEST(Fourier, DirectionsBeyondTheTableScatterNothing) {
+  FourierTable table = make_table();
+  for (float& mu : table.mu) mu *= 0.5f;
+  Bench bench(2);
+  add_table(bench, table);
+  bench.s.wo.set(0, direction(0.9, 0)), bench.wi.set(0, direction(0.3, 0));
+  bench.s.wo.set(1, direction(0.3, 0)), bench.wi.set(1, direction(-0.9, 0));
+  bench.evaluate();
+  EXPECT_EQ(bench.f.r[0], 0);
+  EXPECT_EQ(bench.f.r[1], 0);
+  EXPECT_EQ(fourier_pdf(table, direction(0.9, 0), direction(0.3, 0)), 0);
+}
+
+TEST(Fourier, BrokenFilesAreRefusedWithAReason) {
+  const std::string good = make_file();
+  const auto problem = [](const std::string& bytes) {
+    FourierTable table;
+    return parse_fourier_table(bytes, table);
+  };
+  const auto with = [&](size_t offset, auto value) {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + offset, &value, sizeof value);
+    return problem(bytes);
+  };
+  EXPECT_EQ(problem(good), "");
+  EXPECT_EQ(problem(""), "is not a bsdf file of version 1");
+  EXPECT_EQ(with(0, 'X'), "is not a bsdf file of version 1");
+  EXPECT_EQ(with(7, '\x02'), "is not a bsdf file of version 1");
+  EXPECT_EQ(problem(good.substr(0, good.size() - 1)), "ends too early");
+  EXPECT_EQ(with(12, int32_t{2000000000}), "ends too early") << "a hostile number of nodes";
+  EXPECT_EQ(with(12, int32_t{-1}), "has a broken header");
+  EXPECT_EQ(with(44, -1.0f), "has a broken header") << "an index of refraction below 0";
+  EXPECT_NE(with(24, int32_t{2}).find("not supported"), std::string::npos) << "two channels";
+  EXPECT_NE(with(8, int32_t{0}).find("not supported"), std::string::npos);
+  EXPECT_EQ(with(64 + 4, -1.0f), "has cosines that do not increase");
+  EXPECT_EQ(with(64, -1.5f), "has a cosine outside [-1, 1]");
+  const size_t series = 64 + 4 * (kNodes + kNodes * kNodes);
+  EXPECT_EQ(with(series, int32_t{1000000}), "has a series that is longer than its coefficients");
+  EXPECT_EQ(with(series, int32_t{-1}), "has a series that is longer than its coefficients");
+  EXPECT_EQ(with(series + 4, int32_t{kOrder + 1}), "has a series that is longer than its coefficients");
+  EXPECT_EQ(with(good.size() - 4, std::nanf("")), "holds numbers that are not finite");
+}
+
+}  // namespace
+}  // namespace whit
