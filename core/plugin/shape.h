@@ -125,17 +125,18 @@ class AnalyticShape : public Shape {
   bool flips_ = false;
 };
 
-/// Cubic Bezier segments with varying widths. Flat: always facing the ray. Cylinder: the same, shaded as a
-/// tube. Ribbon: turned by the normals.
+/// Cubic Bezier segments with widths. All face the ray. Flat: and are shaded so. Cylinder: shaded as a tube. Ribbon:
+/// turned by the normals, and the narrower the more they turn away.
 struct CurveData {
   enum class Kind { Flat, Ribbon, Cylinder } kind = Kind::Flat;
   std::vector<double> control_points;  ///< Cubic Bezier, 4 x 3 per segment, object space.
-  std::vector<float> widths;           ///< 4 per segment, object space, full width (not radius).
-  std::vector<float> normals;          ///< Ribbon: 4 x 3 per segment.
-  std::vector<float> u_range;          ///< 2 per segment: u at its start and end, over the whole curve.
+  std::vector<float> widths;           ///< 4 per segment, linear along it, object space, full width (not radius).
+  std::vector<float> normals;          ///< Ribbon: 4 x 3 per segment, an arc of the unit sphere as a Bezier curve.
+  std::vector<float> u_range;          ///< 2 per segment: u at its start and end.
+  int split_depth = 3;                 ///< Segments are traced in 2^split_depth pieces.
 };
 
-/// A shape made of curves (hair, grass), traced by the ray tracer's own curve primitive.
+/// A shape made of curves (hair, grass), traced by core/accel/curve.cpp.
 class CurveShape : public Shape {
  public:
   virtual bool build_curves(const PrepareContext& ctx, CurveData& out) = 0;

@@ -3,7 +3,7 @@
 
 #include "shape_support.h"
 
-namespace whit::test {
+namespace whit::shape_test {
 namespace {
 
 Vec3d control(const CurveData& c, size_t segment, size_t i) {
@@ -81,6 +81,15 @@ TEST(Curve, BsplinesFollowTheirBasis) {
   }
 }
 
+TEST(Curve, SplitDepthIsPbrtsWithinReason) {
+  for (const auto& [given, made_of] : {std::pair{0, 0}, std::pair{3, 3}, std::pair{99, 5}}) {
+    Made made("curve", {points("P", kPoints), integers("splitdepth", {given})});
+    CurveData c;
+    ASSERT_TRUE(made.ok() && made.build(c)) << made.said();
+    EXPECT_EQ(c.split_depth, made_of);
+  }
+}
+
 Parameter normals(std::vector<double> v) { return numbers(ParamType::Normal3, "N", std::move(v)); }
 
 TEST(Curve, NormalsOfARibbonTurnEvenly) {
@@ -126,4 +135,4 @@ TEST(Curve, MistakesAreErrors) {
 }
 
 }  // namespace
-}  // namespace whit::test
+}  // namespace whit::shape_test

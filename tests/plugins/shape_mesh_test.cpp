@@ -7,7 +7,7 @@
 
 #include "shape_support.h"
 
-namespace whit::test {
+namespace whit::shape_test {
 namespace {
 
 Parameter normals(const char* name, std::vector<double> v) { return numbers(ParamType::Normal3, name, std::move(v)); }
@@ -263,4 +263,4 @@ TEST(Nurbs, CountsMustFit) {
 }
 
 }  // namespace
-}  // namespace whit::test
+}  // namespace whit::shape_test

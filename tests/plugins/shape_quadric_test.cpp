@@ -4,7 +4,7 @@
 
 #include "shape_support.h"
 
-namespace whit::test {
+namespace whit::shape_test {
 namespace {
 
 struct Case {
@@ -268,4 +268,4 @@ TEST(HyperboloidAsPbrt, HasThePointsPbrtFits) {
 }
 
 }  // namespace
-}  // namespace whit::test
+}  // namespace whit::shape_test

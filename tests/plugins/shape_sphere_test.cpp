@@ -4,7 +4,7 @@
 #include "core/base/quadratic.h"
 #include "shape_support.h"
 
-namespace whit::test {
+namespace whit::shape_test {
 namespace {
 
 /// |o + t d|^2 - 1 in 106 bits: the sign says on which side of the root t lies.
@@ -178,4 +178,4 @@ TEST(Sphere, AMatrixOfSixDigitsIsStillSampledByItsCone) {
 }
 
 }  // namespace
-}  // namespace whit::test
+}  // namespace whit::shape_test

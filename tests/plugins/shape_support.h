@@ -10,7 +10,7 @@
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
-namespace whit::test {
+namespace whit::shape_test {
 
 inline Parameter parameter(ParamType type, const char* name) {
   Parameter p;
@@ -109,4 +109,4 @@ class Numbers {
   uint64_t state_;
 };
 
-}  // namespace whit::test
+}  // namespace whit::shape_test

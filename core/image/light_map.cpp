@@ -1,0 +1,35 @@
+#include "core/image/light_map.h"
+
+#include <limits>
+
+#include "core/base/fastmath.h"
+#include "core/image/image.h"
+#include "core/image/texture_store.h"
+
+namespace whit {
+
+bool LightMap::prepare(const PrepareContext& ctx, const FileName& file) {
+  if (file.empty()) return true;
+  const Result<ImageInfo> info = probe_image(file.path);
+  if (!info.ok()) {
+    ctx.diagnostics->file_error(file.where, info.error);
+    return false;
+  }
+  aspect_ = static_cast<double>(info.value.width) / info.value.height;
+  TextureSpec spec;
+  spec.path = file.path;
+  spec.flip = false;
+  image_ = ctx.textures->add(spec);
+  return true;
+}
+
+void LightMap::look_up(int n, const float* s, const float* t, const RGBLanes& out) const {
+  image_->lookup(n, s, t, nullptr, nullptr, nullptr, nullptr, out.r, out.g, out.b);
+  constexpr float kMost = std::numeric_limits<float>::max();
+  for_lanes(n, [=](int i) {
+    const auto sound = [](float x) { return x <= kMost ? max_of(x, 0.0f) : 0.0f; };
+    out.set(i, {sound(out.r[i]), sound(out.g[i]), sound(out.b[i])});
+  });
+}
+
+}  // namespace whit

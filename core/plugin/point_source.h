@@ -1,0 +1,46 @@
+// Lights at a point whose intensity depends on the direction: what spot, goniometric and projection share.
+#pragma once
+
+#include "core/plugin/light.h"
+#include "core/plugin/texture_mapping.h"
+
+namespace whit {
+
+/// A point that sends out I * scale times a factor of the direction; what arrives falls with the square of the
+/// distance. Unlike pbrt's "point", it is moved, turned and scaled by the light's whole transform.
+class PointSource : public Light {
+ public:
+  RGB I{1.0f}, scale{1.0f};
+
+  bool is_delta() const override { return true; }
+  EffectSet effects() const override { return {Effect::DeltaLight}; }
+  bool is_black() const override { return whit::is_black(I * scale); }
+  void sample(const LightSamples& s) const final;
+
+ protected:
+  /// The most lanes that factor() is called with.
+  static constexpr int kBlock = 128;
+
+  /// Puts the light at a point of light space; call from prepare(). Returns false after reporting that light_to_world
+  /// cannot be inverted.
+  bool place(const PrepareContext& ctx, const Vec3d& at);
+  /// What the intensity is multiplied with in n directions from the light (light space, not of length 1; 0 at the light
+  /// itself).
+  virtual void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const = 0;
+
+ private:
+  Vec3f position_{0, 0, 0};       ///< Render space.
+  AffineMap direction_to_light_;  ///< Up to a positive factor.
+  RGB intensity_{0.0f};
+  float to_render_ = 1;  ///< Render lengths per world length.
+};
+
+/// The parameters that all of them have.
+inline auto intensity_param() {
+  return param(&PointSource::I, "I", RGB{1.0f}, Unit::Intensity, "Intensity: radiance at distance 1.");
+}
+inline auto intensity_scale_param() {
+  return param(&PointSource::scale, "scale", RGB{1.0f}, Unit::None, "Factor of I.");
+}
+
+}  // namespace whit

@@ -1,0 +1,48 @@
+// A point whose intensity in every direction is read from a lat-long picture, as makers of lamps measure it. y of light
+// space is the picture's zenith. Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.3.
+
+#include "core/base/fastmath.h"
+#include "core/image/light_map.h"
+#include "core/plugin/point_source.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+class GoniometricLight final : public PointSource {
+ public:
+  FileName mapname;
+
+  bool prepare(const PrepareContext& ctx) override { return map_.prepare(ctx, mapname) && place(ctx, {0, 0, 0}); }
+
+ private:
+  void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const override {
+    if (!map_) {
+      for_lanes(n, [=](int i) { out.set(i, RGB(1.0f)); });
+      return;
+    }
+    alignas(64) float s[kBlock] = {}, t[kBlock] = {};
+    for_lanes(n, [&](int i) {
+      const float phi = atan2_of(d.z[i], d.x[i]);
+      // The arc tangent keeps the digits near the poles, which the arc cosine loses.
+      const float theta = atan2_of(std::sqrt(d.x[i] * d.x[i] + d.z[i] * d.z[i]), d.y[i]);
+      s[i] = (phi < 0 ? phi + kTwoPi : phi) * (0.5f * kInvPi);
+      t[i] = theta * kInvPi;
+    });
+    map_.look_up(n, s, t, out);
+  }
+
+  LightMap map_;
+};
+
+const Register<GoniometricLight> goniometric{
+    "light",
+    "goniometric",
+    "A point whose intensity is measured: a picture of all directions.",
+    intensity_param(),
+    intensity_scale_param(),
+    param(&GoniometricLight::mapname, "mapname", Unit::None,
+          "Lat-long map of factors of I, +y of light space at its top. Without one, the same in all directions.")};
+
+}  // namespace
+}  // namespace whit

@@ -1,0 +1,66 @@
+// A point that lights a cone, at full intensity inside and fading towards its edge by the fourth power. Source: Pharr,
+// Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.1.
+
+#include <cmath>
+
+#include "core/base/fastmath.h"
+#include "core/plugin/point_source.h"
+#include "core/plugin/registry.h"
+
+namespace whit {
+namespace {
+
+class SpotLight final : public PointSource {
+ public:
+  Point from, to;
+  float coneangle = 30, conedeltaangle = 5;
+
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (from.value == to.value) diagnostics.error(statement, "\"from\" and \"to\" of the spotlight are the same point");
+  }
+
+  bool prepare(const PrepareContext& ctx) override {
+    axis_ = Vec3f((to.value - from.value).normalized());
+    const auto angle = static_cast<double>(coneangle);
+    edge_ = one_minus_cos(angle), full_ = one_minus_cos(angle - static_cast<double>(conedeltaangle));
+    return place(ctx, from.value);
+  }
+
+ private:
+  /// 1 - cos keeps the digits of narrow cones, which the cosine loses.
+  static float one_minus_cos(double degrees) {
+    const double s = std::sin(degrees * detail::kPiD / 360);
+    return static_cast<float>(2 * s * s);
+  }
+
+  void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const override {
+    const Vec3f axis = axis_;
+    const float edge = edge_, full = full_;
+    const float slope = edge > full ? 1 / (edge - full) : 0.0f;
+    for_lanes(n, [=](int i) {
+      const Vec3f off = normalize(d[i]) - axis;
+      const float x = 0.5f * dot(off, off);  // 1 - cos of the angle to the axis
+      const float delta = (edge - x) * slope, fading = delta * delta * (delta * delta);
+      const float inside = x <= full ? 1.0f : fading;
+      out.set(i, RGB(x <= edge ? inside : 0.0f));
+    });
+  }
+
+  Vec3f axis_{0, 0, 1};        ///< Light space, unit.
+  float edge_ = 0, full_ = 0;  ///< 1 - cos of the angles where the light ends, and where it begins to fade.
+};
+
+const Register<SpotLight> spot{
+    "light",
+    "spot",
+    "A point that lights a cone with a soft edge.",
+    intensity_param(),
+    intensity_scale_param(),
+    param(&SpotLight::from, "from", Point{}, Unit::Length, "Position."),
+    param(&SpotLight::to, "to", Point{{0, 0, 1}}, Unit::Length, "A point on the cone's axis."),
+    param(&SpotLight::coneangle, "coneangle", 30.0f, Unit::Degrees, "Angle between the cone's axis and its edge."),
+    param(&SpotLight::conedeltaangle, "conedeltaangle", 5.0f, Unit::Degrees,
+          "Angle inside the edge over which the light fades.")};
+
+}  // namespace
+}  // namespace whit
