@@ -16,7 +16,15 @@ constexpr int kWidth = 16;
 struct GeometryUser {
   const AnalyticShape* analytic = nullptr;
   const AlphaTest* alpha = nullptr;
+  CurveView curves{};
 };
+
+/// Rounded outward: a float box must hold what was bounded in double.
+void set_bounds(const Box3d& box, RTCBounds& out) {
+  const auto down = [](double v) { return std::nextafterf(static_cast<float>(v), -INFINITY); };
+  const auto up = [](double v) { return std::nextafterf(static_cast<float>(v), INFINITY); };
+  out = {down(box.min.x), down(box.min.y), down(box.min.z), 0, up(box.max.x), up(box.max.y), up(box.max.z), 0};
+}
 
 void analytic_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& shape = *static_cast<const GeometryUser*>(args->geometryUserPtr)->analytic;
@@ -27,11 +35,7 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
                                  {c & 1 ? object.max.x : object.min.x, c & 2 ? object.max.y : object.min.y,
                                   c & 4 ? object.max.z : object.min.z}));
   }
-  // Rounded outward: a float box must hold the double surface.
-  const auto down = [](double v) { return std::nextafterf(static_cast<float>(v), -INFINITY); };
-  const auto up = [](double v) { return std::nextafterf(static_cast<float>(v), INFINITY); };
-  *args->bounds_o = {down(box.min.x), down(box.min.y), down(box.min.z), 0,
-                     up(box.max.x),   up(box.max.y),   up(box.max.z),   0};
+  set_bounds(box, *args->bounds_o);
 }
 
 /// The valid rays of an Embree packet in an analytic shape's object space.
@@ -113,6 +117,56 @@ void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   });
 }
 
+void curve_piece_bounds(const RTCBoundsFunctionArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  set_bounds(curve_bounds(user.curves, args->primID), *args->bounds_o);
+}
+
+/// Meets a packet with a piece of a curve and hands what the alpha test leaves standing to accept(lane, hit).
+template <class Accept>
+void trace_curve(const GeometryUser& user, unsigned piece, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
+                 const Accept& accept) {
+  CurveHit hits[kWidth];
+  const CurveRays lanes{static_cast<int>(width),        valid,
+                        &RTCRayN_org_x(rays, width, 0), &RTCRayN_org_y(rays, width, 0),
+                        &RTCRayN_org_z(rays, width, 0), &RTCRayN_dir_x(rays, width, 0),
+                        &RTCRayN_dir_y(rays, width, 0), &RTCRayN_dir_z(rays, width, 0),
+                        &RTCRayN_tnear(rays, width, 0), &RTCRayN_tfar(rays, width, 0)};
+  uint32_t found = intersect_curve(user.curves, piece, lanes, hits);
+  for (; found; found &= found - 1) {
+    const int i = __builtin_ctz(found);
+    const CurveHit& hit = hits[i];
+    if (user.alpha) {
+      const float t = static_cast<float>(hit.t);
+      const Vec3f p(lanes.ox[i] + t * lanes.dx[i], lanes.oy[i] + t * lanes.dy[i], lanes.oz[i] + t * lanes.dz[i]);
+      if (user.alpha->cut(user.curves.segment_of(piece), hit.u, hit.v, p, shadow)) continue;
+    }
+    accept(static_cast<unsigned>(i), hit);
+  }
+}
+
+void curve_intersect(const RTCIntersectFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const unsigned width = args->N;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
+  trace_curve(user, args->primID, rays, args->valid, width, false, [&](unsigned i, const CurveHit& hit) {
+    RTCRayN_tfar(rays, width, i) = static_cast<float>(hit.t);
+    RTCHitN_u(hits, width, i) = hit.u;
+    RTCHitN_v(hits, width, i) = hit.v;
+    RTCHitN_primID(hits, width, i) = user.curves.segment_of(args->primID);
+    RTCHitN_geomID(hits, width, i) = args->geomID;
+    RTCHitN_instID(hits, width, i, 0) = args->context->instID[0];
+  });
+}
+
+void curve_occluded(const RTCOccludedFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  trace_curve(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, const CurveHit&) {
+    RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+  });
+}
+
 template <bool kShadow>
 void alpha_filter(const RTCFilterFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
@@ -159,7 +213,7 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
   }
   if (rays.t_max) copy(ray.tfar, rays.t_max);
   if (rays.time) copy(ray.time, rays.time);
-  for (int i = 0; i < kWidth; ++i) valid[i] = (i < count) & is_usable(ray, i) ? -1 : 0;
+  for (int i = 0; i < kWidth; ++i) valid[i] = ((i < count) & is_usable(ray, i)) ? -1 : 0;
 }
 
 }  // namespace
@@ -185,8 +239,8 @@ struct Accel::Impl {
     if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     return scene;
   }
-  GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha) {
-    users.push_back(std::make_unique<GeometryUser>(GeometryUser{shape, alpha}));
+  GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha, const CurveView& curves = {}) {
+    users.push_back(std::make_unique<GeometryUser>(GeometryUser{shape, alpha, curves}));
     return users.back().get();
   }
   void set_alpha(RTCGeometry geometry, const AlphaTest* alpha) {
@@ -244,20 +298,12 @@ void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest
 }
 
 void Accel::add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha) {
-  RTCGeometry g = rtcNewGeometry(impl_->device, curves.ribbon ? RTC_GEOMETRY_TYPE_NORMAL_ORIENTED_BEZIER_CURVE
-                                                              : RTC_GEOMETRY_TYPE_FLAT_BEZIER_CURVE);
-  const size_t points = 4 * curves.segment_count;
-  rtcSetGeometryTessellationRate(g, 16);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, curves.control_points, 0,
-                             4 * sizeof(float), points);
-  if (curves.ribbon) {
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_NORMAL, 0, RTC_FORMAT_FLOAT3, curves.normals, 0, 3 * sizeof(float),
-                               points);
-  }
-  auto* index = static_cast<uint32_t*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT, sizeof(uint32_t), curves.segment_count));
-  for (size_t i = 0; i < curves.segment_count; ++i) index[i] = static_cast<uint32_t>(4 * i);
-  impl_->set_alpha(g, alpha);
+  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(curves.piece_count()));
+  rtcSetGeometryUserData(g, impl_->new_user(nullptr, alpha, curves));
+  rtcSetGeometryBoundsFunction(g, curve_piece_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, curve_intersect);
+  rtcSetGeometryOccludedFunction(g, curve_occluded);
   impl_->attach(group, g, shape);
 }
 
@@ -334,7 +380,8 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
 
 void Accel::occluded(const RayLanes& rays, uint8_t* blocked, bool coherent) const {
   const RTCScene scene = impl_->groups[kWorld].scene;
-  EmbreeQuery query(coherent);
+  // Embree 3.13.5 never returns from a coherent packet of occlusion rays that meets an instance.
+  EmbreeQuery query(coherent && impl_->instance_group.empty());
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[kWidth];
   for (int first = 0; first < rays.n; first += kWidth) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/accel/curve.h"
 #include "core/base/vec.h"
 #include "core/batch/lanes.h"
 #include "core/plugin/shape.h"
@@ -28,7 +29,7 @@ struct HitLanes {
   int32_t* shape = nullptr;          ///< Index given to add_*(), -1 for a miss.
   uint32_t* prim = nullptr;          ///< Triangle or curve segment within the shape.
   int32_t* instance = nullptr;       ///< Index of the instance, -1 for world geometry.
-  float *u = nullptr, *v = nullptr;  ///< Barycentric weights of vertices 1 and 2; along and across a curve.
+  float *u = nullptr, *v = nullptr;  ///< Barycentric weights of vertices 1 and 2; along and across a curve, in [0,1].
 };
 
 /// Decides whether a surface is there at a hit (alpha textures). Called from worker threads.
@@ -45,14 +46,6 @@ struct MeshView {
   size_t vertex_count = 0;
   const uint32_t* indices = nullptr;  ///< 3 per triangle.
   size_t triangle_count = 0;
-};
-
-/// Cubic Bezier curves in their group's space, 4 control points (x, y, z, radius) per segment.
-struct CurveView {
-  const float* control_points = nullptr;
-  size_t segment_count = 0;
-  bool ribbon = false;             ///< Turned by normals instead of facing the ray.
-  const float* normals = nullptr;  ///< Ribbon: 4 x 3 per segment.
 };
 
 /// Affine 3x4 matrices, column-major as Embree's FLOAT3X4_COLUMN_MAJOR: x axis, y axis, z axis, translation.

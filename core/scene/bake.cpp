@@ -86,19 +86,19 @@ std::unique_ptr<Curves> bake_curves(const CurveData& data, const Mat4d& object_t
   auto curves = std::make_unique<Curves>();
   curves->kind = data.kind;
   curves->u_range = data.u_range;
-  const Mat4d& m = object_to_group;
-  const double volume = std::abs(
-      Vec3d(m[0][0], m[0][1], m[0][2]).dot(Vec3d(m[1][0], m[1][1], m[1][2]).cross(Vec3d(m[2][0], m[2][1], m[2][2]))));
-  const double width_scale = std::cbrt(volume);
+  curves->normals = data.normals;
+  curves->split_depth = data.split_depth;
   const size_t points = data.control_points.size() / 3;
+  Box3d box;
+  for (size_t i = 0; i < points; ++i) box.extendBy(point_of(data.control_points, i));
+  // Relative to their middle, so that curves far from their object's origin keep their digits.
+  const Vec3d middle = box.isEmpty() ? Vec3d(0, 0, 0) : box.center();
   for (size_t i = 0; i < points; ++i) {
-    append(curves->control_points, transform_point(m, point_of(data.control_points, i)));
-    curves->control_points.push_back(static_cast<float>(0.5 * width_scale * data.widths[i]));
+    append(curves->control_points, point_of(data.control_points, i) - middle);
+    curves->control_points.push_back(0.5f * data.widths[i]);
   }
-  const Mat4d n = normal_matrix(m);
-  for (size_t i = 0; i + 2 < data.normals.size(); i += 3) {
-    append(curves->normals, transform_vector(n, {data.normals[i], data.normals[i + 1], data.normals[i + 2]}));
-  }
+  curves->to_group = Mat4d().translate(middle) * object_to_group;
+  curves->from_group = curves->to_group.inverse();
   return curves;
 }
 

@@ -13,7 +13,7 @@ Box3d mesh_bounds(const MeshData& data, const Mat4d& m);
 /// Transforms a mesh by `object_to_group` into floats. Triangles without area are dropped and counted.
 std::unique_ptr<Mesh> bake_mesh(const MeshData& data, const Mat4d& object_to_group, size_t& degenerate);
 
-/// Transforms curves; radii scale with the cube root of the transform's volume.
+/// Moves curves to a space of their own, which keeps the shape of their object space.
 std::unique_ptr<Curves> bake_curves(const CurveData& data, const Mat4d& object_to_group);
 
 /// The inverse transpose of the linear part, scaled so that its largest entry is about 1 (normals only).

@@ -254,7 +254,8 @@ class Builder {
     shape.sort_key = sort_key(shape, index);
     shape.emission = group.moving_shape ? -1 : emission_of(d);
     if (group.moving_shape && d.area_light >= 0) {
-      diagnostics_.warning(d.where, "a moving shape cannot be an area light", "it is shown without emission, as in pbrt");
+      diagnostics_.warning(d.where, "a moving shape cannot be an area light",
+                           "it is shown without emission, as in pbrt");
     }
     auto alpha = make_alpha_test(shape, plugin);
     attach(group, shape, index, alpha.get());
@@ -270,11 +271,7 @@ class Builder {
                               {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index,
                               alpha);
     } else if (shape.curves) {
-      const Curves& c = *shape.curves;
-      scene_->accel->add_curves(
-          group.accel_group,
-          {c.control_points.data(), c.segment_count(), c.kind == CurveData::Kind::Ribbon, c.normals.data()}, index,
-          alpha);
+      scene_->accel->add_curves(group.accel_group, shape.curves->view(), index, alpha);
     } else {
       scene_->accel->add_analytic(group.accel_group, *shape.analytic, index, alpha);
     }

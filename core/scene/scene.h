@@ -28,13 +28,19 @@ struct Mesh {
   size_t bytes() const;
 };
 
-/// Curves baked into their group's space.
+/// Curves in a space of their own: their object space, moved to their middle. Widths are measured there.
 struct Curves {
-  std::vector<float> control_points;  ///< 4 x (x, y, z, radius) per segment.
+  std::vector<float> control_points;  ///< 4 x (x, y, z, half width) per segment.
   std::vector<float> normals;         ///< 4 x 3 per segment, ribbons only.
   std::vector<float> u_range;         ///< 2 per segment.
   CurveData::Kind kind = CurveData::Kind::Flat;
+  int split_depth = 0;
+  Mat4d to_group, from_group;
   size_t segment_count() const { return control_points.size() / 16; }
+  CurveView view() const {
+    return {control_points.data(), segment_count(), normals.empty() ? nullptr : normals.data(),
+            split_depth,           to_group,        from_group};
+  }
 };
 
 /// One shape as shading sees it. Exactly one of mesh, curves and analytic is set.
