@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+"""docs/add-a-material.md, followed literally: its plugin compiles, its commands print what the page says, its scene has
+the pixels the page derives, and the generic tests of materials pass with it.
+
+The plugin is compiled in a temporary folder with the flags of the other plugins and linked with the objects of the
+build, so that neither the source tree nor the build changes. $WHIT_BINARY_DIR is the build.
+"""
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+BUILD = os.environ.get("WHIT_BINARY_DIR", ROOT + "/build/release")
+PAGE = ROOT + "/docs/add-a-material.md"
+PLUGIN = "plugins/materials/paper.cpp"
+
+
+def blocks():
+    """The fenced blocks that a comment marks, as {mark: text}."""
+    with open(PAGE, encoding="utf-8") as f:
+        return dict(re.findall(r"^<!-- (.*?) -->\n```\w*\n(.*?)^```$", f.read(), re.DOTALL | re.MULTILINE))
+
+
+def run(command, **options):
+    return subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, **options)
+
+
+def must(command, **options):
+    done = run(command, **options)
+    if done.returncode != 0:
+        raise AssertionError("%s\nexit %d\n%s%s" % (" ".join(command)[:500], done.returncode, done.stdout, done.stderr))
+    return done
+
+
+def compile_command(source, target):
+    """The command that compiles the page's plugin: that of matte.cpp, with other files."""
+    with open(BUILD + "/compile_commands.json", encoding="utf-8") as f:
+        entry = next(e for e in json.load(f) if e["file"].endswith("/plugins/materials/matte.cpp"))
+    command = shlex.split(entry["command"])
+    command[command.index("-o") + 1] = target
+    command[command.index("-c") + 1] = source
+    return command, entry["directory"]
+
+
+def link_command(target, extra_object, output):
+    """The command that links a target of the build, with one more object and another output."""
+    lines = must(["ninja", "-C", BUILD, "-t", "commands", target]).stdout.splitlines()
+    parts = shlex.split(lines[-1].removeprefix(": && "))
+    command = parts[:parts.index("&&")] if "&&" in parts else parts
+    place = command.index("-o") + 1
+    command[place] = output
+    return command[:place - 1] + [extra_object] + command[place - 1:]
+
+
+class AddAMaterial(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = cls.scratch.name
+        cls.blocks = blocks()
+        os.makedirs(os.path.dirname(os.path.join(cls.folder, PLUGIN)))
+        for mark, text in cls.blocks.items():
+            if mark.startswith("file: "):
+                with open(os.path.join(cls.folder, mark.removeprefix("file: ")), "w", encoding="utf-8") as f:
+                    f.write(text)
+        cls.object = os.path.join(cls.folder, "paper.o")
+        command, directory = compile_command(os.path.join(cls.folder, PLUGIN), cls.object)
+        must(command, cwd=directory)
+        cls.whit = os.path.join(cls.folder, "build/release/whit")
+        os.makedirs(os.path.dirname(cls.whit))
+        must(link_command("whit", cls.object, cls.whit), cwd=BUILD)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def test_the_page_names_a_plugin_that_is_not_there_yet(self):
+        self.assertIn("file: " + PLUGIN, self.blocks)
+        self.assertFalse(os.path.exists(os.path.join(ROOT, PLUGIN)), "the page must describe another material")
+
+    def test_it_is_formatted_and_includes_what_plugins_may(self):
+        # The tools see the page's file beside the repository's core/.
+        for name in ("core", "parser", ".clang-format"):
+            os.symlink(os.path.join(ROOT, name), os.path.join(self.folder, name))
+        offences = run([sys.executable, ROOT + "/tools/check-includes", self.folder]).stdout.splitlines()
+        self.assertEqual([o for o in offences if o.startswith(PLUGIN)], [])
+        must([ROOT + "/tools/check-format", os.path.join(self.folder, PLUGIN)])
+
+    def test_the_commands_print_what_the_page_says(self):
+        ran = 0
+        for mark, text in self.blocks.items():
+            if not mark.startswith("run"):
+                continue
+            edits = re.findall(r"([\w. ]+) -> ([\w. ]+)", mark.partition(": ")[2])
+            with open(os.path.join(self.folder, "paper.pbrt"), "w", encoding="utf-8") as f:
+                scene = self.blocks["file: paper.pbrt"]
+                for old, new in edits:
+                    self.assertIn(old.strip(), scene)
+                    scene = scene.replace(old.strip(), new.strip())
+                f.write(scene)
+            commands = re.findall(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", text, re.MULTILINE)
+            for command, expected in commands:
+                done = run(shlex.split(command), cwd=self.folder)
+                self.assertEqual(done.stdout + done.stderr, expected, command)
+                ran += 1
+        self.assertGreaterEqual(ran, 2)
+
+    def test_the_pixels_are_what_the_page_derives(self):
+        import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
+        with open(os.path.join(self.folder, "paper.pbrt"), "w", encoding="utf-8") as f:
+            f.write(self.blocks["file: paper.pbrt"])
+        said = must([self.whit, "paper.pbrt", "--quiet"], cwd=self.folder)
+        self.assertEqual(said.stdout + said.stderr, "")
+        with open(PAGE, encoding="utf-8") as f:
+            derived = re.search(r"= \(([\d.]+), ([\d.]+), ([\d.]+)\)\.", f.read())
+        # 0.5 (1 - 0.25) and 0.5 * 0.25: exact in half but for the rounding of pi and 1/pi.
+        self.assertEqual([float(v) for v in derived.groups()], [0.375, 0.125, 0])
+        image = oiio.ImageBuf(os.path.join(self.folder, "paper.exr"))
+        names = list(image.spec().channelnames)
+        pixels = image.get_pixels(oiio.FLOAT)[..., [names.index(c) for c in "RGB"]].reshape(-1, 3)
+        self.assertEqual(len(pixels), 16 * 16)
+        for channel, value in enumerate((0.375, 0.125, 0)):
+            self.assertAlmostEqual(float(pixels[:, channel].min()), value, delta=value * 2**-11)
+            self.assertAlmostEqual(float(pixels[:, channel].max()), value, delta=value * 2**-11)
+        self.assertTrue(os.path.exists(os.path.join(self.folder, "paper.png")))
+
+    def test_the_generic_tests_cover_it(self):
+        if not os.path.exists(BUILD + "/tests/test_plugin"):
+            self.skipTest("the tests are not built")
+        program = os.path.join(self.folder, "test_plugin")
+        must(link_command("test_plugin", self.object, program), cwd=BUILD)
+        said = must([program, "--gtest_filter=EveryMaterial.*"], cwd=self.folder).stdout
+        self.assertRegex(said, r"\[  PASSED  \] [1-9]\d* tests")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,327 @@
+#!/usr/bin/env python3
+"""docs/differences-from-pbrt.md: each difference it lists has a test here, which shows that whit does as the page says.
+
+What pbrt-v3 does is not tested; the page says where it was seen.
+"""
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+import numpy
+
+ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
+PAGE = ROOT + "/docs/differences-from-pbrt.md"
+WHIT = os.environ.get("WHIT", ROOT + "/build/release/whit")
+
+# The camera stands at the origin, looks along +z and sees x and y from -1 to 1.
+TINY = '''Film "image" "integer xresolution" [%d] "integer yresolution" [%d]
+Sampler "halton" "integer pixelsamples" [%d]
+%s
+WorldBegin
+%s
+WorldEnd
+'''
+ORTHO = 'Camera "orthographic"'
+BEHIND = 'LookAt 0 0 0  0 0 -1  0 1 0\nCamera "orthographic"'
+
+
+def scene(world, camera=ORTHO, size=8, samples=16):
+    return TINY % (size, size, samples, camera, world)
+
+
+class Differences(unittest.TestCase):
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        self.rendered = 0
+
+    def run_whit(self, *arguments):
+        return subprocess.run([WHIT, *arguments], capture_output=True, text=True, check=False, cwd=self.folder,
+                              stdin=subprocess.DEVNULL, timeout=120)
+
+    def save(self, text):
+        with open(os.path.join(self.folder, "s.pbrt"), "w", encoding="utf-8") as f:
+            f.write(text)
+
+    def render(self, text, *flags, said=""):
+        """The picture as an array [y, x, channel]; the program must say what is expected and nothing else."""
+        import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
+        self.save(text)
+        # A new name each time: OpenImageIO keeps files it has read in a cache.
+        self.rendered += 1
+        name = "%d.exr" % self.rendered
+        done = self.run_whit("s.pbrt", "--quiet", "--type", "float", "--outfile", name, "--display", "none", *flags)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        if said:
+            self.assertIn(said, done.stderr)
+        else:
+            self.assertEqual(done.stderr, "")
+        image = oiio.ImageBuf(os.path.join(self.folder, name))
+        names = list(image.spec().channelnames)
+        return image.get_pixels(oiio.FLOAT)[..., [names.index(c) for c in "RGB"]]
+
+    def refused(self, text, code, message):
+        self.save(text)
+        done = self.run_whit("s.pbrt", "--quiet", "--outfile", "s.exr")
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(message, done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "s.exr")))
+
+    # ---- Light ----
+
+    def test_sphere_lights_far_away(self):
+        # A sphere of radius 1 and radiance D^2 at distance D: irradiance pi D^2 / D^2, times 0.5 / pi.
+        for distance in (1e3, 2e3, 4e3, 6e3, 1e5, 1e6):
+            rgb = self.render(scene('''
+              AttributeBegin
+                AreaLightSource "diffuse" "rgb L" [%r %r %r]
+                Translate 0 0 %r
+                Shape "sphere"
+              AttributeEnd
+              Material "matte" "rgb Kd" [0.5 0.5 0.5]
+              Translate 0 0 1
+              Shape "disk" "float radius" [10]''' % (distance**2, distance**2, distance**2, 1 - distance)))
+            # The nearest point of a pixel's cone is nearer than the centre: relative 1 / D^2; and float.
+            numpy.testing.assert_allclose(rgb, 0.5, rtol=1e-5)
+
+    def glows_and_lights(self, emitter):
+        """The radiance seen at an emitter ahead of the camera, and that of a wall behind the camera."""
+        world = '''
+          AttributeBegin
+            Material "matte" "rgb Kd" [0 0 0]
+            AreaLightSource "diffuse" "rgb L" [3 3 3]
+            Translate 0 0 5
+            %s
+          AttributeEnd
+          Translate 0 0 -5
+          Shape "disk" "float radius" [10]''' % emitter
+        return self.render(scene(world))[4, 4, 0], self.render(scene(world, BEHIND))[4, 4, 0]
+
+    def check_the_side_that_glows_lights(self, shape):
+        for ahead in ("", "ReverseOrientation"):
+            for mirror in ("", "Scale -1 1 1", "Scale 1 1 -1", "Scale -1 -1 -1"):
+                seen, lit = self.glows_and_lights("%s\n%s\n%s" % (ahead, mirror, shape))
+                self.assertIn(seen, (0.0, 3.0))
+                self.assertEqual(seen > 0, lit > 0.001, (shape, ahead, mirror, seen, lit))
+
+    def test_quadric_lights_under_mirroring(self):
+        for shape in ('Shape "disk"', 'Shape "sphere"', 'Rotate 90 1 0 0\nShape "sphere" "float zmax" [0.9]',
+                      'Rotate 90 1 0 0\nShape "cylinder"'):
+            self.check_the_side_that_glows_lights(shape)
+
+    def test_mesh_lights_with_normals(self):
+        quad = 'Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]'
+        self.check_the_side_that_glows_lights(quad)
+        self.check_the_side_that_glows_lights(quad + ' "normal N" [0 0 1 0 0 1 0 0 1 0 0 1]')
+        self.check_the_side_that_glows_lights(quad + ' "normal N" [0 0 -1 0 0 -1 0 0 -1 0 0 -1]')
+
+    def test_tips_of_cones(self):
+        # Seen and lit along +y, on the line of the cone that faces the camera, up to 0.001 below its tip. The normal
+        # is (0, -2, 1) / sqrt(5), so 0.5 / pi * pi * 2 / sqrt(5). The picture is 2e-5 / 5e-4 radians wide at the tip.
+        rgb = self.render(scene('''
+          LightSource "distant" "point from" [0 -1 0] "point to" [0 0 0] "rgb L" [3.14159265 3.14159265 3.14159265]
+          Shape "cone" "float radius" [1] "float height" [2]''', '''LookAt 0 -5 0  0 0 0  0 0 1
+          Camera "orthographic" "float screenwindow" [-1e-5 1e-5 1.8 1.999]'''))
+        numpy.testing.assert_allclose(rgb, 0.5 * 2 / 5**0.5, rtol=1e-3)
+
+    def test_cones_and_paraboloids_can_be_lights(self):
+        for shape in ("cone", "paraboloid", "hyperboloid"):
+            seen, lit = self.glows_and_lights('ReverseOrientation\nRotate 90 1 0 0\nShape "%s"' % shape)
+            self.assertEqual(seen > 0, lit > 0.001, shape)
+
+    # ---- The same bits ----
+
+    def test_same_bits_for_any_threads_and_crop(self):
+        text = scene('''
+          LightSource "point" "point from" [2 3 -4] "rgb I" [40 40 40]
+          AttributeBegin
+            AreaLightSource "diffuse" "rgb L" [5 5 5]
+            Translate -2 2 -1
+            Shape "sphere" "float radius" [0.5]
+          AttributeEnd
+          Translate 0 0 3
+          Material "perfectglass"
+          Shape "sphere" "float radius" [0.6]
+          Material "plastic"
+          Translate 0 0 1
+          Shape "disk" "float radius" [10]''', 'PixelFilter "gaussian" "float xwidth" [2] "float ywidth" [2]\n' + ORTHO,
+                     size=48, samples=4)
+        whole = self.render(text, "--nthreads", "1")
+        numpy.testing.assert_array_equal(self.render(text, "--nthreads", "2"), whole)
+        left = self.render(text, "--cropwindow", "0", "0.5", "0", "1")
+        right = self.render(text, "--cropwindow", "0.5", "1", "0", "1")
+        numpy.testing.assert_array_equal(numpy.concatenate([left, right], axis=1), whole)
+
+    # ---- Numbers ----
+
+    def test_far_from_the_origin(self):
+        def at(x, y, z):
+            return scene('''
+              Translate %r %r %r
+              LightSource "point" "point from" [2 3 -4] "rgb I" [40 40 40]
+              Translate 0 0 3
+              Material "perfectglass"
+              Shape "sphere" "float radius" [0.6]
+              Material "plastic"
+              Translate 0 0 1
+              Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-9 -9 0  9 -9 0  9 9 0  -9 9 0]
+              ''' % (x, y, z), "LookAt %r %r %r  %r %r %r  0 1 0\n%s" % (x, y, z, x, y, z + 1, ORTHO),
+                         size=48, samples=4)
+        here = self.render(at(0.0, 0.0, 0.0))
+        there = self.render(at(1e6, -2e6, 3e6))
+        relmse = numpy.mean((there - here)**2 / (here**2 + (0.1 * here.mean())**2))
+        self.assertLess(relmse, 1e-9)
+
+    def test_index_1_is_invisible(self):
+        sky = 'LightSource "skybox"\n'
+        empty = self.render(scene(sky, size=64))
+        ball = self.render(scene(sky + 'Translate 0 0 3\nMaterial "perfectglass" "float index" [1]\nShape "sphere"',
+                                 size=64))
+        numpy.testing.assert_allclose(ball, empty, rtol=0, atol=1e-6)
+
+    def test_no_limit_of_sample_dimensions(self):
+        # Between two mirrors at 45 degrees: one bounce every 2 units of z, 600 of them, to a wall with a lamp.
+        rgb = self.render('''Integrator "whitted" "integer maxdepth" [2000]
+          ''' + scene('''
+          AttributeBegin
+            Material "mirror" "rgb Kr" [1 1 1]
+            Shape "trianglemesh" "integer indices" [0 1 2 0 2 3  4 5 6 4 6 7]
+              "point P" [-9 -1 -9  9 -1 -9  9 -1 1300  -9 -1 1300   -9 1 -9  9 1 -9  9 1 1300  -9 1 1300]
+          AttributeEnd
+          AttributeBegin
+            AreaLightSource "diffuse" "rgb L" [30 30 30]
+            Translate 0 0 1195
+            Shape "sphere" "float radius" [0.2]
+          AttributeEnd
+          Translate 0 0 1200
+          Shape "disk" "float radius" [20]''',
+                      'LookAt 0 0 0  0 1 1  1 0 0\nCamera "orthographic" "float screenwindow" [-.1 .1 -.1 .1]',
+                      samples=4))
+        self.assertGreater(float(rgb.min()), 0.01)
+
+    def test_ribbons_with_equal_normals(self):
+        rgb = self.render(scene('''
+          LightSource "distant" "point from" [0 0 -1] "point to" [0 0 1]
+          Translate 0 0 5
+          Shape "curve" "string type" ["ribbon"] "float width" [0.8] "normal N" [0 0 -1 0 0 -1]
+            "point P" [-1 0 0  -.3 0 0  .3 0 0  1 0 0]'''))
+        self.assertTrue(numpy.isfinite(rgb).all())
+        self.assertGreater(float(rgb[4, 4, 0]), 0.1)
+
+    def test_hyperboloids_through_the_axis(self):
+        rgb = self.render(scene('''
+          LightSource "distant" "point from" [0 0 -1] "point to" [0 0 1]
+          Translate 0 0 5
+          Shape "hyperboloid" "point p1" [1 0 1] "point p2" [-1 0 -1]'''))
+        self.assertGreater(float(rgb.max()), 0.01)
+
+    def test_invalid_samples_are_counted(self):
+        # A lamp whose channels add up to more than a float holds, in the middle of the picture.
+        rgb = self.render(scene('''
+          AreaLightSource "diffuse" "rgb L" [3e38 3e38 3e38]
+          Translate 0 0 5
+          ReverseOrientation
+          Shape "disk" "float radius" [0.5]''', samples=1),
+                          said="samples were not finite or negative and were left out")
+        self.assertTrue(numpy.isfinite(rgb).all())
+
+    # ---- Files and commands ----
+
+    def test_mistakes_on_the_command_line(self):
+        self.save(scene('LightSource "point"'))
+        done = self.run_whit("--nthread", "1", "s.pbrt")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("did you mean --nthreads?", done.stderr)
+        done = self.run_whit("nowhere.pbrt")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("nowhere.pbrt", done.stderr)
+        done = self.run_whit("s.pbrt", "--outfile", "nowhere/s.exr")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("nowhere", done.stderr)
+
+    def test_malformed_numbers_are_errors(self):
+        self.refused(scene('LightSource "point" "rgb I" [1.5x 1 1]'), 3, "s.pbrt:5:30: error")
+
+    def test_every_mistake_is_reported(self):
+        self.save(scene('Material "matte" "rgb kd" [1 1 1]\nShape "sphere" "float radius" [-1]\nShape "spere"'))
+        said = self.run_whit("check", "s.pbrt").stderr
+        for expected in ('s.pbrt:5:18: warning: matte has no parameter "kd"', 'did you mean "Kd"?',
+                         "s.pbrt:6:32: error", 's.pbrt:7:7: warning: unknown shape "spere"', 'did you mean "sphere"?'):
+            self.assertIn(expected, said)
+
+    def test_parameters_of_the_wrong_type(self):
+        self.save(scene('LightSource "point"', 'Camera "perspective" "integer fov" [20]'))
+        done = self.run_whit("s.pbrt", "--quiet", "--outfile", "s.exr")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn('parameter "fov" of perspective is of type float, not integer', done.stderr)
+
+    def test_degenerate_triangles(self):
+        self.render(scene('''
+          LightSource "point"
+          Translate 0 0 5
+          Shape "trianglemesh" "integer indices" [0 1 2 0 1 1] "point P" [-1 -1 0  1 -1 0  1 1 0]'''),
+                    said="trianglemesh has 1 degenerate triangle")
+
+    def test_other_integrators(self):
+        self.render('Integrator "path"\n' + scene('LightSource "point"'), said="the picture is made with whitted")
+        self.render(scene('LightSource "point"'))
+
+    def test_other_samplers(self):
+        self.render(scene('LightSource "point"').replace("halton", "nosuchsampler"), said="halton is used instead")
+
+    def test_the_name_of_the_picture(self):
+        self.save(scene('LightSource "point"'))
+        self.assertEqual(self.run_whit("s.pbrt", "--quiet").returncode, 0)
+        self.assertEqual(sorted(os.listdir(self.folder)), ["s.exr", "s.pbrt", "s.png"])
+
+    def test_pictures_of_other_formats(self):
+        import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
+        for name in ("map.jpg", "map.tif", "map.hdr"):
+            image = oiio.ImageBuf(oiio.ImageSpec(8, 8, 3, oiio.FLOAT))
+            oiio.ImageBufAlgo.fill(image, (0.5, 0.5, 0.5))
+            self.assertTrue(image.write(os.path.join(self.folder, name)), name)
+            rgb = self.render(scene('''
+              LightSource "distant" "point from" [0 0 -1] "point to" [0 0 0] "rgb L" [3.14159265 3.14159265 3.14159265]
+              Texture "map" "spectrum" "imagemap" "string filename" ["%s"]
+              Material "matte" "texture Kd" ["map"]
+              Translate 0 0 5
+              Shape "disk" "float radius" [10]''' % name))
+            # 8 bits hold 0.5 as 128 / 255, and a .hdr mantissa has 8 bits too.
+            numpy.testing.assert_allclose(rgb, 0.5, atol=0.5 / 255 + 1e-3)
+
+    def test_what_is_not_there_yet(self):
+        for statement, answer in (('Material "nosuch"', "matte is used instead"),
+                                  ('LightSource "nosuch"', "the light is left out"),
+                                  ('Shape "nosuch"', "the shape is left out"),
+                                  ('MakeNamedMedium "m" "string type" ["homogeneous"]', "the picture is made without")):
+            self.render(scene(statement), said=answer)
+        self.refused(scene('Texture "t" "float" "nosuch"'), 3, 'error: unknown float texture "nosuch"')
+        self.refused(scene("", 'Camera "nosuch"'), 3, 'error: unknown camera "nosuch"')
+
+    # ---- The page ----
+
+    def test_every_row_names_a_test_or_scene_that_exists(self):
+        with open(PAGE, encoding="utf-8") as f:
+            rows = [line for line in f if line.startswith("| ")]
+        named = set()
+        for row in rows:
+            shown = row.strip().strip("|").split("|")[-1]
+            if shown.strip() == "shown by" or set(shown.strip()) == {"-"}:
+                continue
+            names = re.findall(r"`([\w./-]+)`", shown)
+            self.assertTrue(names, row)
+            for name in names:
+                if name.startswith("test_"):
+                    self.assertTrue(hasattr(self, name), row)
+                    named.add(name)
+                else:
+                    self.assertTrue(os.path.exists(os.path.join(ROOT, name)), row)
+        own = {n for n in dir(self) if n.startswith("test_")} - {"test_every_row_names_a_test_or_scene_that_exists"}
+        self.assertEqual(named, own, "every test stands for a row, and every row is tested")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,187 @@
+// Surface interaction: derivatives and normals of triangles and spheres that can be written down, and the offset of rays.
+#include "core/render/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/render/render.h"
+#include "tests/scene/scene_text.h"
+
+namespace whit {
+namespace {
+
+/// One ray through a built scene, in world space, and the surface it meets.
+struct Hit {
+  Arena arena;
+  ShadingBatch s;
+  Mat4d to_world;
+  double scale;
+
+  Hit(const Scene& scene, const Vec3d& from, const Vec3d& to)
+      : to_world(scene.space.to_world()), scale(scene.space.scale) {
+    const Mat4d m = scene.space.from_world();
+    SurfaceHits h;
+    h.n = 1;
+    h.o = arena.vec3(1), h.d = arena.vec3(1);
+    h.t = arena.floats(1), h.u = arena.floats(1), h.v = arena.floats(1);
+    h.shape = arena.alloc<int32_t>(1), h.instance = arena.alloc<int32_t>(1), h.prim = arena.alloc<uint32_t>(1);
+    h.o.set(0, Vec3f(transform_point(m, from)));
+    h.d.set(0, Vec3f((to - from).normalized()));
+    scene.accel->intersect({1, h.o, h.d, nullptr, nullptr}, {h.t, h.shape, h.prim, h.instance, h.u, h.v}, false);
+    if (h.shape[0] < 0) throw std::runtime_error("a miss");
+    s = compute_surfaces(scene, h, arena);
+  }
+  Vec3d p() const { return transform_point(to_world, Vec3d(s.p[0])); }
+  Vec3d dpdu() const { return Vec3d(s.dpdu[0]) / scale; }
+  Vec3d dpdv() const { return Vec3d(s.dpdv[0]) / scale; }
+  Vec3d p_error() const { return Vec3d(s.p_error[0]) / scale; }
+};
+
+void expect_near(const Vec3d& a, const Vec3d& b, double tolerance, const char* what) {
+  EXPECT_LE((a - b).length(), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ") for (" << b.x
+                                         << ", " << b.y << ", " << b.z << ")";
+}
+
+std::string scene(const std::string& shape) {
+  return "LookAt 0 0 10  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n" + shape + "\nWorldEnd\n";
+}
+
+TEST(Surface, TriangleDerivativesComeFromItsTextureCoordinates) {
+  // p(u, v) = (2 u, 3 v, 0): with uv (0,0), (1,0), (0,1) at (0,0,0), (2,0,0), (0,3,0), dp/du = (2,0,0), dp/dv = (0,3,0).
+  const std::string mesh = "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0  2 0 0  0 3 0] ";
+  const test::BuiltScene built(scene(mesh + "\"float uv\" [0 0  1 0  0 1]"));
+  const Hit hit(*built.scene, {0.5, 0.75, 9}, {0.5, 0.75, 0});
+  expect_near(hit.p(), {0.5, 0.75, 0}, 1e-6, "p");
+  expect_near(hit.dpdu(), {2, 0, 0}, 1e-5, "dpdu");
+  expect_near(hit.dpdv(), {0, 3, 0}, 1e-5, "dpdv");
+  expect_near(Vec3d(hit.s.ng[0]), {0, 0, 1}, 1e-6, "ng");
+  expect_near(Vec3d(hit.s.wo[0]), {0, 0, 1}, 1e-6, "wo");
+  EXPECT_NEAR(hit.s.u[0], 0.25, 1e-6);
+  EXPECT_NEAR(hit.s.v[0], 0.25, 1e-6);
+  // pbrt's default coordinates (0,0), (1,0), (1,1): p = (2 (u - v), 3 v, 0).
+  const test::BuiltScene plain(scene(mesh));
+  const Hit other(*plain.scene, {0.5, 0.75, 9}, {0.5, 0.75, 0});
+  expect_near(other.dpdu(), {2, 0, 0}, 1e-5, "dpdu");
+  expect_near(other.dpdv(), {-2, 3, 0}, 1e-5, "dpdv");
+}
+
+TEST(Surface, TheNormalIsThatOfTheCornersOrderAndFlips) {
+  const std::string mesh = "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [-1 -1 0  1 -1 0  0 1 0]";
+  const std::pair<const char*, double> cases[] = {{"", 1},
+                                                  {"ReverseOrientation ", -1},
+                                                  {"Scale -1 1 1 ", 1},
+                                                  {"Scale 1 1 -1 ", -1},
+                                                  {"Scale -1 1 1 ReverseOrientation ", -1}};
+  for (const auto& [placement, z] : cases) {
+    const test::BuiltScene built(scene(placement + mesh));
+    const Hit hit(*built.scene, {0, 0, 9}, {0, 0, 0});
+    expect_near(Vec3d(hit.s.ng[0]), {0, 0, z}, 1e-6, placement);
+    expect_near(Vec3d(hit.s.ns[0]), {0, 0, z}, 1e-6, placement);
+  }
+}
+
+TEST(Surface, SphereDerivatives) {
+  // pbrt's sphere: p = r (sin t cos f, sin t sin f, cos t), f = 2 pi u, t = pi - pi v (v from bottom to top). So
+  // dp/du = 2 pi (-y, x, 0) and dp/dv = pi (z cos f, z sin f, -r sin t) * -1 * -1: with dt/dv = -pi,
+  // dp/dv = -pi r (cos t cos f, cos t sin f, -sin t) = pi (-z cos f, -z sin f, r sin t).
+  const double r = 2, theta = 1.1, phi = 0.7;
+  const Vec3d p = Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)) * r;
+  const test::BuiltScene built(scene("Shape \"sphere\" \"float radius\" 2"));
+  const Hit hit(*built.scene, p * 3.0, {0, 0, 0});
+  expect_near(hit.p(), p, 1e-5, "p");
+  EXPECT_NEAR(hit.s.u[0], phi / (2 * M_PI), 1e-6);
+  EXPECT_NEAR(hit.s.v[0], 1 - theta / M_PI, 1e-6);
+  expect_near(hit.dpdu(), Vec3d(-p.y, p.x, 0) * (2 * M_PI), 1e-4, "dpdu");
+  expect_near(hit.dpdv(), Vec3d(-p.z * std::cos(phi), -p.z * std::sin(phi), r * std::sin(theta)) * M_PI, 1e-4, "dpdv");
+  expect_near(Vec3d(hit.s.ng[0]), p / r, 1e-6, "ng");
+}
+
+TEST(Surface, InstancesCarryPointsAndNormals) {
+  // The plane x + y = 1 of the object, normal (1,1,0); under Scale 2 1 1 its normal is (1,2,0) (inverse transpose), and the
+  // point (0.5, 0.5, 0) comes to (1, 0.5, 0), moved by (3, 0, 0).
+  const test::BuiltScene built(
+      scene("ObjectBegin \"o\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [1 0 -1  0 1 -1  0.5 0.5 "
+            "2] ObjectEnd\n"
+            "Translate 3 0 0 Scale 2 1 1 ObjectInstance \"o\""));
+  const Hit hit(*built.scene, {9, 0.5, 0}, {4, 0.5, 0});
+  expect_near(hit.p(), {4, 0.5, 0}, 1e-5, "p");
+  const Vec3d n = Vec3d(hit.s.ng[0]);
+  EXPECT_NEAR(std::abs(n.dot(Vec3d(1, 2, 0).normalized())), 1, 1e-6);
+}
+
+TEST(Surface, PointsAreWithinTheirErrorOfTheSurface) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  const test::BuiltScene built(scene("Translate 100 -50 7 Scale 1 2 3 Shape \"sphere\""));
+  for (int i = 0; i < 200; ++i) {
+    const Vec3d d = Vec3d(normal(random), normal(random), normal(random)).normalized();
+    const Hit hit(*built.scene, Vec3d(100, -50, 7) + d * 30.0, {100, -50, 7});
+    const Vec3d p = hit.p() - Vec3d(100, -50, 7);
+    const Vec3d object(p.x, p.y / 2, p.z / 3);
+    // To first order |f(p)| <= grad f . error, f = |object|^2 - 1, grad f = 2 (x, y / 2, z / 3).
+    const Vec3d e = hit.p_error();
+    const double bound = 2 * (std::abs(object.x) * e.x + std::abs(object.y) * e.y / 2 + std::abs(object.z) * e.z / 3);
+    EXPECT_LE(std::abs(object.length2() - 1), bound);
+    EXPECT_LT(bound, 1e-3);
+  }
+}
+
+TEST(OffsetOrigin, MovesToTheSideOfTheDirectionBeyondTheError) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> signed_unit(-1, 1);
+  const auto vector = [&] { return Vec3f(signed_unit(random), signed_unit(random), signed_unit(random)); };
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3f n = vector().normalized(), w = vector();
+    const Vec3f p = vector() * std::pow(10.0f, 6 * signed_unit(random));
+    const Vec3f error = Vec3f(std::abs(p.x), std::abs(p.y), std::abs(p.z)) * 1e-6f;
+    if (std::abs(n.dot(w)) < 1e-3f) continue;
+    const Vec3d moved = Vec3d(offset_origin(p, error, n, w)) - Vec3d(p);
+    const double along = moved.dot(Vec3d(n)) * (n.dot(w) > 0 ? 1 : -1);
+    // Any point within the error of p lies at most n . error from p's plane.
+    const double needed = std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
+    EXPECT_GE(along, needed * (1 - 1e-6));
+    EXPECT_LE(along, 2 * needed + 1e-30);
+  }
+}
+
+/// A ball on a floor, a mirror and an area light, all moved by `far`, camera included.
+std::string small_scene(const std::string& far) {
+  return "Film \"image\" \"integer xresolution\" 64 \"integer yresolution\" 48\nSampler \"halton\" \"integer "
+         "pixelsamples\" 4\n"
+         "LookAt 0 2 6  0 0.5 0  0 1 0\n" +
+         far + "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n" + far + R"(
+  LightSource "point" "point from" [2 4 3] "rgb I" [20 20 20]
+  AttributeBegin AreaLightSource "diffuse" "rgb L" [5 5 5] Translate -2 3 0 Rotate 180 1 0 0 Shape "disk" AttributeEnd
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-5 0 -5  -5 0 5  5 0 5  5 0 -5]
+  Translate -0.8 0.5 0  Material "plastic" Shape "sphere" "float radius" 0.5
+  Translate 1.6 0 0  Material "mirror" Shape "sphere" "float radius" 0.5
+WorldEnd
+)";
+}
+
+TEST(Surface, AFarAwaySceneGivesTheSamePicture) {
+  // The world moves by (1e6, -2e6, 1e6), and the camera with it: what it sees is the same to 2e6 * 2^-53, 2e-10 of a unit.
+  // Floats in world space would be 0.125 apart there.
+  const auto picture = [](const test::BuiltScene& built) { return render(*built.scene, {}).picture.rgb; };
+  const auto near = picture(test::BuiltScene(small_scene("")));
+  const std::string to = "Translate 1e6 -2e6 1e6\n";
+  std::string text = small_scene(to);
+  const size_t camera = text.find(to);
+  text.replace(camera, to.size(), "Translate -1e6 2e6 -1e6\n");
+  const auto far = picture(test::BuiltScene(text));
+  ASSERT_EQ(near.size(), far.size());
+  double mean = 0, error = 0;
+  for (float v : near) mean += v;
+  mean /= static_cast<double>(near.size());
+  EXPECT_GT(mean, 0.05);
+  for (size_t i = 0; i < near.size(); ++i) {
+    const double d = static_cast<double>(far[i]) - near[i];
+    error += d * d / (static_cast<double>(near[i]) * near[i] + 0.01 * mean * mean);
+  }
+  EXPECT_LE(error / static_cast<double>(near.size()), 1e-6);
+}
+
+}  // namespace
+}  // namespace whit
