@@ -66,7 +66,7 @@ class Binder {
     if (const PluginInfo* info = find_plugin(category, entity.plugin)) return info;
     std::string remedy = did_you_mean(entity.plugin, plugin_names(category));
     if (unknown.severity == Severity::Warning) {
-      if (!remedy.empty()) remedy += "; ";
+      if (!remedy.empty()) remedy += ' ';
       remedy += unknown.consequence;
     }
     diagnostics_.add({unknown.severity, ErrorClass::Scene, entity.plugin_at,

@@ -62,7 +62,8 @@ void print_plan(const nlohmann::json& world) {
     }
     const size_t more = e["count"].get<size_t>() - e["causes"].size();
     if (more > 0) because += fmt::format("; {} more", more);
-    fmt::print("{:<18} {:<4} {}\n", e["effect"].get<std::string>(), e["on"].get<bool>() ? "on" : "off", because);
+    const char* state = e["on"].get<bool>() ? "on " : "off";
+    fmt::print("{:<18} {}{}{}\n", e["effect"].get<std::string>(), state, because.empty() ? "" : "  ", because);
   }
   fmt::print("{:<18} {}\n", "ray differentials", world["differentials"].get<bool>() ? "carried" : "none");
   for (const auto& l : world["left_out"]) {

@@ -62,7 +62,7 @@ std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + 
 }  // namespace
 
 int help_command(const Arguments& args) {
-  if (args.empty()) {
+  if (args.empty() || args[0] == "--help" || args[0] == "-h") {
     print_overview();
     return kDone;
   }

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <exception>
+#include <filesystem>
 #include <new>
 
+#include "core/base/diagnostics.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/terminal.h"
 
@@ -25,6 +27,14 @@ const std::vector<Command>& commands() {
 
 namespace {
 
+/// The command that a first word which is no file was probably meant to be, or "".
+std::string misspelt_command(const Arguments& args) {
+  if (args.empty() || args[0].empty() || args[0][0] == '-' || std::filesystem::exists(args[0])) return {};
+  std::vector<std::string> names;
+  for (const Command& c : commands()) names.push_back(c.name);
+  return nearest_name(args[0], names);
+}
+
 int dispatch(const Arguments& args) {
   if (!args.empty()) {
     for (const Command& c : commands()) {
@@ -35,6 +45,10 @@ int dispatch(const Arguments& args) {
       fmt::print("whit {}\n", WHIT_VERSION);
       return kDone;
     }
+  }
+  if (std::string meant = misspelt_command(args); !meant.empty()) {
+    say(fmt::format("whit: there is no command and no file \"{}\"; did you mean `whit {}`?", args[0], meant));
+    return kUsage;
   }
   return render_command(args);
 }

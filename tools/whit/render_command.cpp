@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <set>
 
 #include "core/accel/accel.h"
 #include "parser/format.h"
@@ -99,6 +100,19 @@ std::string usage_problem(const Settings& s) {
   return {};
 }
 
+/// Files that must be there before the first scene is rendered; "" or the first problem.
+std::string file_problem(const Settings& s) {
+  for (const std::string& scene : s.scenes) {
+    std::error_code error;
+    if (scene != "-" && !std::filesystem::exists(scene, error))
+      return fmt::format("cannot open \"{}\": no such file", scene);
+  }
+  if (!s.log_dir.empty() && !std::filesystem::is_directory(s.log_dir)) {
+    return fmt::format("--logdir: there is no folder \"{}\"", s.log_dir);
+  }
+  return {};
+}
+
 double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
@@ -163,6 +177,10 @@ class RenderJob {
       say("whit: " + problem);
       const bool view = problem.rfind("unknown view", 0) == 0 || problem.rfind("view ", 0) == 0;
       return view ? kUsage : kFileError;
+    }
+    for (const std::string& name : {output.main_file, output.display_file}) {
+      if (name.empty() || written_.insert(name).second) continue;
+      say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
     }
     const auto start = std::chrono::steady_clock::now();
     Diagnostics building;
@@ -306,6 +324,7 @@ class RenderJob {
   const std::string path_;
   Sources sources_;
   Times times_;
+  std::set<std::string> written_;  ///< Pictures of this file's worlds.
 };
 
 /// --cat and --toply.
@@ -341,6 +360,10 @@ int render_command(const Arguments& args) {
     return kUsage;
   }
   if (settings.scenes.empty()) settings.scenes.push_back("-");
+  if (std::string problem = file_problem(settings); !problem.empty()) {
+    say("whit: " + problem);
+    return kFileError;
+  }
   if (settings.cat || settings.toply) return print_normal_form(settings);
   std::unique_ptr<tbb::global_control> threads;
   if (settings.threads > 0) {

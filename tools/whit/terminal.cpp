@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <tuple>
+#include <vector>
 
 namespace whit {
 
@@ -18,7 +20,11 @@ void say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings) {
   const bool colour = use_colour();
   int errors = 0, warnings = 0;
-  for (const Diagnostic& d : diagnostics.all()) {
+  std::vector<Diagnostic> ordered = diagnostics.all();
+  std::stable_sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::tie(a.where.file, a.where.offset) < std::tie(b.where.file, b.where.offset);
+  });
+  for (const Diagnostic& d : ordered) {
     const bool error = d.severity == Severity::Error;
     (error ? errors : warnings) += 1;
     if (error || !quiet_warnings) fmt::print(stderr, "{}", sources.render_diagnostic(d, colour));
