@@ -253,6 +253,11 @@ class Builder {
     }
     shape.sort_key = sort_key(shape, index);
     shape.emission = group.moving_shape ? -1 : emission_of(d);
+    if (shape.curves && shape.emission >= 0) {
+      // A curve always faces the ray, so it has no back that could be dark.
+      scene_->emissions.back().two_sided = true;
+      diagnostics_.warning(d.where, "a curve cannot light other surfaces", "it glows, and that is all");
+    }
     if (group.moving_shape && d.area_light >= 0) {
       diagnostics_.warning(d.where, "a moving shape cannot be an area light",
                            "it is shown without emission, as in pbrt");
