@@ -83,4 +83,25 @@ inline uint32_t permute_bits(uint32_t x, int bits, uint32_t key) {
 /// The bits that hold the numbers below `count` >= 1, at least 1.
 inline int bits_below(uint32_t count) { return count <= 2 ? 1 : std::bit_width(count - 1); }
 
+/// Replaces each of n numbers below `count` by its image under the permutation of these numbers that key_of(i) chooses:
+/// a permutation of the next power of two, applied until the image is small enough (a number not below `count` might
+/// never come to rest). No lane waits for another's result, so none depends on the batch.
+template <class KeyOf>
+inline void permute_lanes(int n, uint32_t count, const KeyOf& key_of, uint32_t* index) {
+  if (count == 1) return;
+  const int bits = bits_below(count);
+#pragma omp simd
+  for (int i = 0; i < n; ++i) index[i] = permute_bits(index[i], bits, key_of(i));
+  if (std::has_single_bit(count)) return;
+  for (uint32_t open = 1; open != 0;) {
+    open = 0;
+#pragma omp simd reduction(| : open)
+    for (int i = 0; i < n; ++i) {
+      const uint32_t next = permute_bits(index[i], bits, key_of(i));
+      index[i] = index[i] < count ? index[i] : next;
+      open |= index[i] < count ? 0u : 1u;
+    }
+  }
+}
+
 }  // namespace whit

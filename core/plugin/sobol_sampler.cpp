@@ -22,8 +22,7 @@ void SobolSampler::begin(const SampleKeys& keys, int first, int n, uint32_t purp
   const int bits = bits_below(static_cast<uint32_t>(pixel_samples));
   const uint32_t mask = static_cast<uint32_t>(pixel_samples) - 1;
   for_lanes(n, [=](int i) {
-    const uint32_t pixel = hash_combine(hash_combine(base, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
-    key[i] = hash_combine(pixel, stream[i]);
+    key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]);
     // The mask is for one sample, whose number has no bit to permute.
     index[i] = permute_bits(sample[i] & mask, bits, key[i]) & mask;
   });

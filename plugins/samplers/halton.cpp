@@ -102,39 +102,18 @@ class Halton final : public Sampler {
   }
 
   /// Keys and shuffled sample numbers of n lanes; `purpose` tells dimensions apart. A sample number out of range would
-  /// never come to rest in shuffle(), so it counts as the last.
+  /// never come to rest in permute_lanes(), so it counts as the last.
   void begin(const SampleKeys& keys, int first, int n, uint32_t purpose, uint32_t* key, uint32_t* index) const {
     const uint32_t base = hash_combine(mix32(seed ^ 0x48616c74u), purpose);
     const int32_t *px = keys.px + first, *py = keys.py + first;
     const uint32_t last = static_cast<uint32_t>(pixel_samples) - 1;
     const uint32_t *sample = keys.index + first, *stream = keys.stream + first;
     for_lanes(n, [=](int i) {
-      const uint32_t pixel =
-          hash_combine(hash_combine(base, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
-      key[i] = hash_combine(pixel, stream[i]);
+      key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]);
       index[i] = sample[i] < last ? sample[i] : last;
     });
-    shuffle(n, key, index);
-  }
-
-  /// Replaces sample numbers below pixel_samples by their images under the permutation that each lane's key chooses:
-  /// a permutation of the next power of two, applied until the image is small enough. No lane waits for another's
-  /// result, so it does not depend on the batch.
-  void shuffle(int n, const uint32_t* key, uint32_t* index) const {
-    const auto count = static_cast<uint32_t>(pixel_samples);
-    if (count == 1) return;
-    const int bits = bits_below(count);
-    for_lanes(n, [=](int i) { index[i] = permute_bits(index[i], bits, key[i]); });
-    if (std::has_single_bit(count)) return;
-    for (uint32_t open = 1; open != 0;) {
-      open = 0;
-#pragma omp simd reduction(| : open)
-      for (int i = 0; i < n; ++i) {
-        const uint32_t next = permute_bits(index[i], bits, key[i]);
-        index[i] = index[i] < count ? index[i] : next;
-        open |= index[i] < count ? 0u : 1u;
-      }
-    }
+    permute_lanes(
+        n, last + 1, [=](int i) { return key[i]; }, index);
   }
 
   /// The scrambled radical inverses in base 3: as many digits as the sample numbers have, and a random rest.

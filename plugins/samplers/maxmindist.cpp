@@ -93,8 +93,7 @@ class MaxMinDist final : public SobolSampler {
     const float width = 1 / static_cast<float>(pixel_samples);
     const uint32_t* const heights = heights_.data();
     for_lanes(keys.n, [=, px = keys.px, py = keys.py, sample = keys.index](int i) {
-      const uint32_t pixel =
-          hash_combine(hash_combine(base, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
+      const uint32_t pixel = pixel_key(base, px[i], py[i]);
       const uint32_t at = sample[i] & mask, jitter = hash_combine(pixel, at);
       // Moved on the torus by whole cells, so that distances stay, and jittered within the cell.
       const uint32_t x = (at + pixel) & mask, y = (heights[at] + (pixel >> 16)) & mask;

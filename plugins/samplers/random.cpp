@@ -24,9 +24,7 @@ class Random final : public Sampler {
     const int32_t *px = keys.px, *py = keys.py;
     const uint32_t *index = keys.index, *stream = keys.stream;
     for_lanes(keys.n, [=](int i) {
-      const uint32_t pixel =
-          hash_combine(hash_combine(key, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
-      u[i] = unit_float(hash_combine(hash_combine(pixel, stream[i]), index[i]));
+      u[i] = unit_float(hash_combine(hash_combine(pixel_key(key, px[i], py[i]), stream[i]), index[i]));
     });
   }
 

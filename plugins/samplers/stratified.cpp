@@ -100,30 +100,15 @@ class Stratified final : public Sampler {
     const uint32_t last = static_cast<uint32_t>(samples_per_pixel()) - 1;
     const uint32_t *sample = keys.index + first, *stream = keys.stream + first;
     for_lanes(n, [=](int i) {
-      const uint32_t pixel =
-          hash_combine(hash_combine(base, static_cast<uint32_t>(px[i])), static_cast<uint32_t>(py[i]));
-      key[i] = hash_combine(pixel, stream[i]);
+      key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]);
       index[i] = sample[i] < last ? sample[i] : last;
     });
     permute(n, last + 1, 0, key, index);
   }
 
-  /// Replaces numbers below `count` by their images under the permutation that each lane's key chooses: a permutation
-  /// of the next power of two, applied until the image is small enough. No lane waits for another's result.
   static void permute(int n, uint32_t count, uint32_t salt, const uint32_t* key, uint32_t* index) {
-    if (count == 1) return;
-    const int bits = bits_below(count);
-    for_lanes(n, [=](int i) { index[i] = permute_bits(index[i], bits, mix32(key[i] ^ salt)); });
-    if (std::has_single_bit(count)) return;
-    for (uint32_t open = 1; open != 0;) {
-      open = 0;
-#pragma omp simd reduction(| : open)
-      for (int i = 0; i < n; ++i) {
-        const uint32_t next = permute_bits(index[i], bits, mix32(key[i] ^ salt));
-        index[i] = index[i] < count ? index[i] : next;
-        open |= index[i] < count ? 0u : 1u;
-      }
-    }
+    permute_lanes(
+        n, count, [=](int i) { return mix32(key[i] ^ salt); }, index);
   }
 };
 
