@@ -2,6 +2,7 @@
 
 #include "core/render/round.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -179,6 +180,7 @@ void Round::find_surfaces() {
   worker_.statistics.surface_points += n;
   if (hits_.rx_o) worker_.statistics.footprints += n;
   shade_runs();
+  if (needs_numbers()) keys_ = make_keys();
 }
 
 /// Splits the points into runs of one material, tilts normals by bump maps and asks for the lobes.
@@ -214,7 +216,15 @@ void Round::add_emitted() {
   }
 }
 
-SampleKeys Round::keys() const {
+/// Whether a light or a choice between specular lobes will draw random numbers.
+bool Round::needs_numbers() const {
+  return scene_.light_dimensions > 0 || std::any_of(runs_.begin(), runs_.end(), [](const Run& r) {
+           return count_lobes(r.lobes, LobeType::SpecularReflection) > 1 ||
+                  count_lobes(r.lobes, LobeType::SpecularTransmission) > 1;
+         });
+}
+
+SampleKeys Round::make_keys() const {
   const SampleChunk& chunk = worker_.chunk;
   SampleKeys k;
   k.n = hits_.n;

@@ -33,7 +33,8 @@ class Round final : public RayRound {
   void report_lost_rays();
   void gather_hits(const int32_t* order, int n);
   void shade_runs();
-  SampleKeys keys() const;
+  bool needs_numbers() const;
+  SampleKeys make_keys() const;
   void sample_emitter(const SceneLight& light, const LightSamples& samples) const;
   void sample_triangle(const SceneLight& light, const LightSamples& samples) const;
   void sample_analytic(const SceneLight& light, const LightSamples& samples) const;
@@ -65,6 +66,7 @@ class Round final : public RayRound {
   RGBLanes throughput_, radiance_;
   int32_t* slot_ = nullptr;
   uint32_t* stream_ = nullptr;
+  SampleKeys keys_;  ///< Of the points; empty when nothing is drawn for them.
   ShadingBatch points_;
   std::vector<Run>& runs_;
 };

@@ -33,7 +33,7 @@ void Round::add_direct(int number) {
   samples.radiance = arena_.rgb(n);
   if (!light.is_delta) {
     float *u = arena_.floats(n), *v = arena_.floats(n);
-    scene_.sampler().get_2d(keys(), worker_.layout.of_light(depth_, light.dimension), u, v);
+    scene_.sampler().get_2d(keys_, worker_.layout.of_light(depth_, light.dimension), u, v);
     samples.u = u, samples.v = v;
   }
   if (light.light) {

@@ -34,7 +34,7 @@ void Round::spawn(bool refraction, const Spawned& out) {
   if (std::any_of(runs_.begin(), runs_.end(), [&](const Run& r) { return count_lobes(r.lobes, type) > 1; })) {
     choice = arena_.floats(hits_.n);
     scene_.sampler().get_1d(
-        keys(), refraction ? worker_.layout.of_refraction(depth_) : worker_.layout.of_reflection(depth_), choice);
+        keys_, refraction ? worker_.layout.of_refraction(depth_) : worker_.layout.of_reflection(depth_), choice);
   }
   for (const Run& run : runs_) {
     const Vec3Lanes wi = out.wi.from(run.first);
