@@ -188,13 +188,4 @@ Box2i crop_pixels(const Vec2i& resolution, const double crop[4]) {
 
 RenderResult render(const Scene& scene, const RenderOptions& options) { return FilmRender(scene, options).run(); }
 
-RGB sample_radiance(const Scene& scene, Vec2i pixel, uint32_t sample) {
-  FlushDenormals flush;
-  Worker worker(scene);
-  const int32_t x = pixel.x, y = pixel.y;
-  generate_camera_rays(worker, 1, &x, &y, &sample);
-  trace_chunk(worker);
-  return worker.chunk.radiance[0];
-}
-
 }  // namespace whit

@@ -35,7 +35,4 @@ Box2i crop_pixels(const Vec2i& resolution, const double crop[4]);
 /// Renders. The picture has the same bits for any number of threads and any crop.
 RenderResult render(const Scene& scene, const RenderOptions& options);
 
-/// The radiance of one sample of one pixel, before camera weight and film: for --pixel and debugging.
-RGB sample_radiance(const Scene& scene, Vec2i pixel, uint32_t sample);
-
 }  // namespace whit
