@@ -252,10 +252,8 @@ class Builder {
       shape.analytic = &analytic;
     }
     shape.sort_key = sort_key(shape, index);
-    shape.emission = group.moving_shape ? -1 : emission_of(d);
+    shape.emission = group.moving_shape ? -1 : emission_of(d, shape);
     if (shape.curves && shape.emission >= 0) {
-      // A curve always faces the ray, so it has no back that could be dark.
-      scene_->emissions.back().two_sided = true;
       diagnostics_.warning(d.where, "a curve cannot light other surfaces", "it glows, and that is all");
     }
     if (group.moving_shape && d.area_light >= 0) {
@@ -288,11 +286,12 @@ class Builder {
     return keys_.try_emplace({shape.material, kind}, static_cast<int>(keys_.size())).first->second;
   }
 
-  int emission_of(const ShapeDescription& d) {
+  int emission_of(const ShapeDescription& d, const SceneShape& shape) {
     if (d.area_light < 0) return -1;
     const auto& light = scene_->bound.area_lights[static_cast<size_t>(d.area_light)].plugin;
     if (!light || is_black(light->radiance())) return -1;
-    scene_->emissions.push_back({light->radiance(), light->two_sided()});
+    // A curve always faces the ray, so it has no back that could be dark.
+    scene_->emissions.push_back({light->radiance(), light->two_sided() || shape.curves != nullptr});
     return static_cast<int>(scene_->emissions.size()) - 1;
   }
 
