@@ -1,7 +1,7 @@
 // Reading pictures: any file OpenImageIO knows, as plain arrays of floats, top row first.
 //
 // Nothing is decoded: the numbers are the file's, integers divided by their maximum, so an 8-bit sRGB value
-// 188 is 188/255 = 0.737. Alpha is never multiplied into the colour. Only core/image includes OpenImageIO.
+// 188 is 188/255 = 0.737. Alpha is never multiplied into the colour. OpenImageIO decodes (core/image/oiio).
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,5 @@
 #include "core/image/write.h"
 
-#include <Imath/half.h>
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +9,8 @@
 #include <exception>
 #include <filesystem>
 
-#include "core/image/atomic_file.h"
+#include "core/image/encode.h"
+#include "core/image/oiio/module.h"
 
 namespace whit {
 namespace {
@@ -52,50 +50,6 @@ std::string image_problem(const OutputImage& image) {
   return "";
 }
 
-// Lets OpenImageIO write into an AtomicFile, which keeps errno's reason for a failure.
-class FileProxy : public OIIO::Filesystem::IOProxy {
- public:
-  FileProxy(AtomicFile& file, const std::string& path) : IOProxy(path, Write), file_(file) {}
-  // Not "file": OpenImageIO's JPEG writer takes that for its own class and casts.
-  const char* proxytype() const override { return "whit"; }
-  void close() override { m_mode = Closed; }
-  size_t write(const void* data, size_t size) override {
-    const size_t n = file_.write_at(data, size, m_pos);
-    m_pos += static_cast<int64_t>(n);
-    return n;
-  }
-  size_t read(void* data, size_t size) override {
-    const size_t n = file_.read_at(data, size, m_pos);
-    m_pos += static_cast<int64_t>(n);
-    return n;
-  }
-  size_t pread(void* data, size_t size, int64_t at) override { return file_.read_at(data, size, at); }
-  size_t pwrite(const void* data, size_t size, int64_t at) override { return file_.write_at(data, size, at); }
-  size_t size() const override { return static_cast<size_t>(file_.size()); }
-
- private:
-  AtomicFile& file_;
-};
-
-// Fills one row of the file, in the file's own number formats.
-using RowFiller = void (*)(const OutputImage&, const OIIO::ImageSpec&, int row, unsigned char* out);
-
-void fill_exr_row(const OutputImage& image, const OIIO::ImageSpec& spec, int row, unsigned char* out) {
-  const size_t first = static_cast<size_t>(row) * image.width;
-  for (size_t i = first; i < first + image.width; ++i)
-    for (int c = 0; c < spec.nchannels; ++c) {
-      const float v = c < 3 ? image.rgb[3 * i + c] : image.layers[c - 3].values[i];
-      if (spec.channelformat(c) == OIIO::TypeDesc::HALF) {
-        const uint16_t bits = Imath::half(v).bits();
-        std::memcpy(out, &bits, sizeof bits);
-        out += sizeof bits;
-      } else {
-        std::memcpy(out, &v, sizeof v);
-        out += sizeof v;
-      }
-    }
-}
-
 // NaN becomes 0: both comparisons of the clamp are false for it.
 template <class T>
 T quantise(float v, float most) {
@@ -104,56 +58,14 @@ T quantise(float v, float most) {
 }
 
 template <class T>
-void fill_display_row(const OutputImage& image, const OIIO::ImageSpec&, int row, unsigned char* out) {
-  const float most = static_cast<float>(static_cast<T>(~T{0}));
-  const size_t n = 3 * static_cast<size_t>(image.width), first = static_cast<size_t>(row) * n;
-  for (size_t i = 0; i < n; ++i) {
-    const T v = quantise<T>(image.rgb[first + i], most);
-    std::memcpy(out + i * sizeof(T), &v, sizeof(T));
+std::vector<unsigned char> quantise_all(std::span<const float> values) {
+  constexpr float kMost = static_cast<T>(~T{0});
+  std::vector<unsigned char> bytes(values.size() * sizeof(T));
+  for (size_t i = 0; i < values.size(); ++i) {
+    const T v = quantise<T>(values[i], kMost);
+    std::memcpy(bytes.data() + i * sizeof(T), &v, sizeof(T));
   }
-}
-
-void add_metadata(const OutputImage& image, OIIO::ImageSpec& spec) {
-  for (const OutputMetadata& m : image.metadata)
-    std::visit([&](const auto& value) { spec.attribute(m.name, value); }, m.value);
-}
-
-// Rows are converted and handed over in slabs, so that a large picture is not copied whole.
-std::string write_rows(OIIO::ImageOutput& output, const OutputImage& image, const OIIO::ImageSpec& spec,
-                       RowFiller fill) {
-  const size_t row_bytes = spec.scanline_bytes(true);
-  const int slab = 64;
-  std::vector<unsigned char> buffer(row_bytes * static_cast<size_t>(std::min(slab, image.height)));
-  for (int y0 = 0; y0 < image.height; y0 += slab) {
-    const int y1 = std::min(y0 + slab, image.height);
-    for (int y = y0; y < y1; ++y) fill(image, spec, y, buffer.data() + row_bytes * (y - y0));
-    if (!output.write_scanlines(spec.y + y0, spec.y + y1, 0, OIIO::TypeDesc::UNKNOWN, buffer.data()))
-      return output.geterror();
-  }
-  return output.close() ? "" : output.geterror();
-}
-
-// Writes through OpenImageIO; returns "" or the reason.
-std::string write_with_oiio(AtomicFile& file, const std::string& path, const OutputImage& image,
-                            const OIIO::ImageSpec& wanted, RowFiller fill) {
-  FileProxy proxy(file, path);
-  std::string reason;
-  {
-    auto output = OIIO::ImageOutput::create(extension(path).substr(1));
-    if (!output || !output->supports("ioproxy")) return "this OpenImageIO cannot write the format";
-    output->set_ioproxy(&proxy);
-    OIIO::ImageSpec spec = wanted;
-    if (!output->open(path, spec)) {
-      reason = output->geterror();
-    } else {
-      // The rows are filled in the formats asked for; a writer that settles for others must not get them.
-      const OIIO::ImageSpec& got = output->spec();
-      if (got.format != spec.format || got.channelformats != spec.channelformats)
-        reason = "this OpenImageIO cannot store the number format";
-      else reason = write_rows(*output, image, spec, fill);
-    }
-  }
-  return file.failure().empty() ? reason : file.failure();
+  return bytes;
 }
 
 // True if a value that goes into a half channel is finite but beyond half's range.
@@ -166,62 +78,28 @@ bool exceeds_half(const OutputImage& image) {
                                           [&](const OutputLayer& l) { return !l.full_float && beyond(l.values); });
 }
 
-OIIO::ImageSpec exr_spec(const OutputImage& image, bool full_float) {
-  const OIIO::TypeDesc colour = full_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::HALF;
-  OIIO::ImageSpec spec(image.width, image.height, 3 + static_cast<int>(image.layers.size()), colour);
-  spec.x = image.x;
-  spec.y = image.y;
-  spec.full_x = spec.full_y = 0;
-  spec.full_width = image.full_width > 0 ? image.full_width : image.x + image.width;
-  spec.full_height = image.full_height > 0 ? image.full_height : image.y + image.height;
-  spec.channelnames = {"R", "G", "B"};
-  spec.alpha_channel = spec.z_channel = -1;
-  bool mixed = false;
-  std::vector<OIIO::TypeDesc> formats(3, colour);
-  for (const OutputLayer& layer : image.layers) {
-    spec.channelnames.push_back(layer.name);
-    formats.push_back(layer.full_float ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT) : colour);
-    mixed |= formats.back() != colour;
-  }
-  if (mixed) spec.channelformats = formats;
-  spec.attribute("compression", "zip");
-  spec.attribute("DateTime", "");  // or OpenImageIO puts the time of day, and equal pictures differ
-  add_metadata(image, spec);
-  return spec;
-}
-
-std::string write_exr(AtomicFile& file, const std::string& path, const OutputImage& image, const WriteOptions& options,
-                      std::string& warning) {
-  bool full_float = options.full_float;
+// Beyond half's range the whole file becomes float, which `warning` says.
+void write_linear(AtomicFile& file, const std::string& path, const OutputImage& image, bool full_float,
+                  std::string& warning) {
   if (!full_float && exceeds_half(image)) {
     full_float = true;
     warning = fmt::format("\"{}\" holds values above {:.0f}, the most a half can store: written as 32-bit float", path,
                           kHalfMax);
   }
-  return write_with_oiio(file, path, image, exr_spec(image, full_float), fill_exr_row);
+  write_exr(file, image, full_float);
 }
 
-std::string write_display(AtomicFile& file, const std::string& path, const OutputImage& image,
-                          const WriteOptions& options) {
-  const std::string e = extension(path);
-  const bool wide = options.bits == 16 && (e == ".png" || e == ".tif" || e == ".tiff");
-  OIIO::ImageSpec spec(image.width, image.height, 3, wide ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::UINT8);
-  if (e == ".tif" || e == ".tiff") {
-    // No colour space: it goes into an EXIF directory, which OpenImageIO 2.4 cannot write through a proxy (the file
-    // comes out unreadable). An empty date, because the time of day would make equal pictures differ.
-    spec.attribute("compression", "zip");
-    spec.attribute("DateTime", "");
-  } else {
-    spec.attribute("oiio:ColorSpace", "sRGB");
-  }
-  if (e == ".jpg" || e == ".jpeg") spec.attribute("compression", fmt::format("jpeg:{}", options.jpeg_quality));
-  if (e != ".tga") add_metadata(image, spec);  // TGA's few fields would hold half of it, and a false version
-  return write_with_oiio(file, path, image, spec, wide ? fill_display_row<uint16_t> : fill_display_row<uint8_t>);
+void write_display(AtomicFile& file, const std::string& format, const OutputImage& image, const WriteOptions& options) {
+  const bool wide = options.bits == 16 && (format == "png" || format == "tif" || format == "tiff");
+  DisplayPixels pixels{image.width, image.height, wide ? 16 : 8, {}, image.metadata};
+  pixels.bytes = wide ? quantise_all<uint16_t>(image.rgb) : quantise_all<uint8_t>(image.rgb);
+  const auto bytes = format == "png" ? encode_png(pixels) : oiio().encode(pixels, format, options.jpeg_quality);
+  file.write_at(bytes.data(), bytes.size(), 0);
 }
 
-// OpenImageIO 2.4 reads PFM but does not write it. Rows go bottom to top, and the sign of the scale says
+// No library at hand writes PFM. Rows go bottom to top, and the sign of the scale says
 // which end of a number comes first. http://netpbm.sourceforge.net/doc/pfm.html
-std::string write_pfm(AtomicFile& file, const OutputImage& image) {
+void write_pfm(AtomicFile& file, const OutputImage& image) {
   const uint16_t one = 1;
   const bool little = *reinterpret_cast<const unsigned char*>(&one) == 1;
   const std::string header = fmt::format("PF\n{} {}\n{}\n", image.width, image.height, little ? "-1.0" : "1.0");
@@ -229,7 +107,17 @@ std::string write_pfm(AtomicFile& file, const OutputImage& image) {
   const size_t row = 3 * static_cast<size_t>(image.width);
   for (int y = image.height - 1; y >= 0; --y)
     at += static_cast<int64_t>(file.write_at(image.rgb.data() + row * static_cast<size_t>(y), row * sizeof(float), at));
-  return file.failure();
+}
+
+// Throws a library's reason; a failure of the file itself stays in `file`, and what a library says to it is dropped.
+void encode(AtomicFile& file, const std::string& path, const OutputImage& image, const WriteOptions& options,
+            std::string& warning) try {
+  const std::string format = extension(path).substr(1);
+  if (format == "exr") write_linear(file, path, image, options.full_float, warning);
+  else if (format == "pfm") write_pfm(file, image);
+  else write_display(file, format, image, options);
+} catch (const std::exception&) {
+  if (file.failure().empty()) throw;
 }
 
 }  // namespace
@@ -246,12 +134,8 @@ WriteResult write_image(const std::string& path, const OutputImage& image, const
   if (reason.empty()) {
     try {
       AtomicFile file(path);
-      const std::string e = extension(path);
-      if (!file.failure().empty()) reason = file.failure();
-      else if (e == ".exr") reason = write_exr(file, path, image, options, result.warning);
-      else if (e == ".pfm") reason = write_pfm(file, image);
-      else reason = write_display(file, path, image, options);
-      if (reason.empty()) reason = file.commit();
+      if (file.failure().empty()) encode(file, path, image, options, result.warning);
+      reason = file.commit();
     } catch (const std::exception& e) { reason = e.what(); }
   }
   if (!reason.empty()) result = {write_error(path, reason), ""};

@@ -1,0 +1,12 @@
+// The functions of the module, for module.cpp to hand out; the table in module.h says what they do.
+#pragma once
+
+#include "core/image/oiio/module.h"
+
+namespace whit {
+
+ImageInfo oiio_probe(const std::string& path);
+Image oiio_read(const std::string& path);
+std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
+
+}  // namespace whit

@@ -1,0 +1,5 @@
+// What the module hands out under a name that dlsym() can find.
+#include "core/image/oiio/functions.h"
+
+extern "C" __attribute__((visibility("default")))
+const whit::Oiio whit_oiio{whit::oiio_probe, whit::oiio_read, whit::oiio_encode};
