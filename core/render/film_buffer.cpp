@@ -21,6 +21,8 @@ FilterTable::FilterTable(const Filter& filter)
                                                                    (static_cast<float>(j) + 0.5f) * y_radius_ / kSize);
     }
   }
+  const auto is_first = [this](float w) { return w == table_.front(); };
+  is_own_pixel_ = x_radius_ == 0.5f && y_radius_ == 0.5f && std::all_of(table_.begin(), table_.end(), is_first);
 }
 
 TileSums::TileSums(Vec2i tile, const FilterTable& filter)
@@ -32,6 +34,7 @@ TileSums::TileSums(Vec2i tile, const FilterTable& filter)
       sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)) {}
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance) {
+  if (filter_->is_own_pixel()) return add_to_own_pixel(film_x, film_y, radiance);
   // Pixel p is reached when p + 0.5 is within the radius of the sample; half-open, so that a box of radius
   // 0.5 gives every sample to exactly one pixel.
   const float dx = film_x - 0.5f, dy = film_y - 0.5f;
@@ -50,6 +53,18 @@ void TileSums::add(float film_x, float film_y, const RGB& radiance) {
       sums[3] += w;
     }
   }
+}
+
+/// add() for the most common filter, a box of one pixel.
+void TileSums::add_to_own_pixel(float film_x, float film_y, const RGB& radiance) {
+  const int x = static_cast<int>(std::floor(film_x)) - x0_, y = static_cast<int>(std::floor(film_y)) - y0_;
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  float* sums = &sums_[4 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x))];
+  const float w = filter_->weight(0, 0);
+  sums[0] += w * radiance.x;
+  sums[1] += w * radiance.y;
+  sums[2] += w * radiance.z;
+  sums[3] += w;
 }
 
 namespace {

@@ -2,6 +2,8 @@
 // same bits for any number of threads, any order of tiles and any crop.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +22,8 @@ class FilterTable {
   /// Pixels beyond a sample's own pixel that it may reach, in x and y.
   int x_reach() const { return x_reach_; }
   int y_reach() const { return y_reach_; }
+  /// True for a box filter whose samples reach their own pixel only, all with the same weight.
+  bool is_own_pixel() const { return is_own_pixel_; }
   /// Weight at an offset from a pixel's centre within the radii.
   float weight(float x, float y) const {
     const int i = std::min(static_cast<int>(std::abs(x) * x_to_table_), kSize - 1);
@@ -32,6 +36,7 @@ class FilterTable {
   float x_radius_, y_radius_, x_to_table_, y_to_table_;
   int x_reach_, y_reach_;
   std::vector<float> table_;
+  bool is_own_pixel_ = false;
 };
 
 /// Sums of one tile and a border around it as wide as the filter reaches. Tiles lie on a grid that is fixed
@@ -51,6 +56,8 @@ class TileSums {
   }
 
  private:
+  void add_to_own_pixel(float film_x, float film_y, const RGB& radiance);
+
   const FilterTable* filter_;
   int x0_, y0_, width_, height_;
   std::vector<float> sums_;
