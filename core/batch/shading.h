@@ -3,6 +3,7 @@
 
 #include "core/batch/arena.h"
 #include "core/batch/lanes.h"
+#include "core/batch/stage_clock.h"
 
 namespace whit {
 
@@ -11,6 +12,7 @@ namespace whit {
 struct ShadingBatch {
   int n = 0;
   Arena* arena = nullptr;            ///< Scratch of the worker that shades this batch.
+  StageClock* clock = nullptr;       ///< Runs while a render is timed; null otherwise.
   Vec3Lanes p;                       ///< Point on the surface.
   Vec3Lanes p_error;                 ///< Bound on the absolute error of p, per component, >= 0.
   Vec3Lanes wo;                      ///< Unit direction towards where the ray came from.

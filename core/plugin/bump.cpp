@@ -51,6 +51,7 @@ void displace_tangent(int n, const Vec3Lanes& tangent, const float* here, const 
 
 void apply_bump(const Tex<float>& displacement, float scale, ShadingBatch& s) {
   if (displacement.is_constant()) return;
+  const StageScope stage(s.clock, Stage::Textures);
   const ArenaScope scratch(*s.arena);
   const float* const du = parameter_step(s, s.dudx, s.dudy);
   const float* const dv = parameter_step(s, s.dvdx, s.dvdy);

@@ -64,6 +64,7 @@ class Tex {
   typename ValueLanes<T>::type operator()(const ShadingBatch& s) const {
     const auto out = ValueLanes<T>::alloc(*s.arena, s.n);
     if (texture_) {
+      const StageScope stage(s.clock, Stage::Textures);
       texture_->evaluate(s, out);
     } else {
       const T v = value_;

@@ -41,7 +41,10 @@ constexpr int kChunk = 2048;
 class FilmRender {
  public:
   FilmRender(const Scene& scene, const RenderOptions& options)
-      : scene_(scene), options_(options), filter_(scene.filter()), workers_([&] { return Worker(scene); }) {}
+      : scene_(scene),
+        options_(options),
+        filter_(scene.filter()),
+        workers_([&] { return Worker(scene, options.time_stages); }) {}
 
   RenderResult run() {
     prepare();
@@ -98,6 +101,7 @@ class FilmRender {
     if (stopped_) return;
     FlushDenormals flush;
     Worker& worker = workers_.local();
+    worker.start_clock();
     const Vec2i tile = first_tile_ + Vec2i(static_cast<int>(t) % tiles_x_, static_cast<int>(t) / tiles_x_);
     const int x0 = std::max(tile.x * TileSums::kTile, samples_.min.x);
     const int x1 = std::min((tile.x + 1) * TileSums::kTile, samples_.max.x);
@@ -115,6 +119,7 @@ class FilmRender {
       }
     }
     if (n > 0) render_samples(worker, tiles_[t], n, px, py, index);
+    worker.stop_clock();
     if (options_.tile_done) preview_tile(tiles_[t], {{x0, y0}, {x1, y1}});
     report_progress();
   }

@@ -30,6 +30,7 @@ Round::Round(Worker& worker, int depth, int first, int count)
 // ---- Intersection ----
 
 void Round::intersect() {
+  const StageScope stage(worker_.clock(), Stage::Intersect);
   ray_hits_ = {arena_.floats(count_),         arena_.alloc<int32_t>(count_), arena_.alloc<uint32_t>(count_),
                arena_.alloc<int32_t>(count_), arena_.floats(count_),         arena_.floats(count_)};
   const float* time = nullptr;
@@ -96,6 +97,7 @@ void Round::pass_through_interfaces() {
 }
 
 void Round::add_escaped() {
+  const StageScope stage(worker_.clock(), Stage::LightSampling);
   report_lost_rays();
   if (scene_.environments.empty()) return;
   ArenaScope scope(arena_);
@@ -157,6 +159,7 @@ void Round::gather_hits(const int32_t* order, int n) {
 }
 
 void Round::find_surfaces() {
+  const StageScope stage(worker_.clock(), Stage::Interaction);
   ray_of_ = arena_.alloc<int32_t>(count_);
   int32_t* keys = arena_.alloc<int32_t>(count_);
   int n = 0;
@@ -177,6 +180,7 @@ void Round::find_surfaces() {
     radiance_.r[i] = radiance_.g[i] = radiance_.b[i] = 0;
   });
   points_ = compute_surfaces(scene_, hits_, arena_);
+  points_.clock = worker_.clock();
   worker_.statistics.surface_points += n;
   if (hits_.rx_o) worker_.statistics.footprints += n;
   shade_runs();
@@ -185,6 +189,7 @@ void Round::find_surfaces() {
 
 /// Splits the points into runs of one material, tilts normals by bump maps and asks for the lobes.
 void Round::shade_runs() {
+  const StageScope stage(worker_.clock(), Stage::Lobes);
   const auto material_of = [&](int i) { return scene_.shapes[static_cast<size_t>(hits_.shape[i])].material; };
   for (int first = 0, last; first < hits_.n; first = last) {
     last = first + 1;
@@ -205,6 +210,7 @@ void Round::shade_runs() {
 }
 
 void Round::add_emitted() {
+  const StageScope stage(worker_.clock(), Stage::LightSampling);
   if (!scene_.plan.live(Effect::AreaLight)) return;
   for (int i = 0; i < hits_.n; ++i) {
     const int e = scene_.shapes[static_cast<size_t>(hits_.shape[i])].emission;

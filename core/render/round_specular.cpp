@@ -20,6 +20,7 @@ void Round::spawn_specular() {
   bool mirrors = false, refracts = false;
   for (const Run& run : runs_) mirrors |= run.mirrors, refracts |= run.refracts;
   if (!mirrors && !refracts) return;
+  const StageScope stage(worker_.clock(), Stage::Spawn);
   ArenaScope scope(arena_);
   Spawned reflected, refracted;
   if (mirrors) spawn(false, reflected = allocate_spawned());

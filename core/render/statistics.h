@@ -4,12 +4,14 @@
 #include <cstdint>
 
 #include "core/base/vec.h"
+#include "core/batch/stage_clock.h"
 
 namespace whit {
 
 struct RenderStatistics {
   int64_t camera_samples = 0;
   int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, passing_rays = 0, shadow_rays = 0;
+  std::array<double, kStages> stage_seconds{};  ///< Over all workers; zero when stages are not timed.
   int64_t surface_points = 0, footprints = 0;
 
   int64_t invalid_samples = 0;        ///< NaN, infinite or negative: left out of the picture.

@@ -97,6 +97,7 @@ void scale_differentials(const CameraRays& rays, int samples_per_pixel) {
 }  // namespace
 
 void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_t* py, const uint32_t* index) {
+  const StageScope stage(worker.clock(), Stage::Camera);
   const Scene& scene = worker.scene;
   worker.chunk = allocate_chunk(worker, n);
   SampleChunk& c = worker.chunk;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "core/batch/arena.h"
@@ -48,13 +49,19 @@ struct MaterialRun {
 /// Everything a worker thread needs and no other may touch.
 class Worker {
  public:
-  explicit Worker(const Scene& of) : scene(of), layout(of) {}
+  Worker(const Scene& of, bool time_stages) : scene(of), layout(of), timed_(time_stages) {}
 
   const Scene& scene;
   const DimensionLayout layout;
   Arena arena;
   SampleChunk chunk;
   RenderStatistics statistics;
+
+  /// Runs while the worker renders a tile of a render that is timed; null otherwise.
+  StageClock* clock() { return clock_ ? &*clock_ : nullptr; }
+  void start_clock();
+  void stop_clock();
+
   struct Cursor {
     int depth, next;
   };
@@ -65,6 +72,8 @@ class Worker {
   RayList& level(int depth);
 
  private:
+  const bool timed_;
+  std::optional<StageClock> clock_;
   std::deque<RayList> levels_;  ///< A deque: references stay good while it grows.
 };
 
