@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/accel/embree.h"
+#include "core/accel/replay.h"
 
 namespace whit {
 namespace {
@@ -17,6 +18,8 @@ struct GeometryUser {
   const AnalyticShape* analytic = nullptr;
   const AlphaTest* alpha = nullptr;
   CurveView curves{};
+  RTCBounds bounds{};           ///< Of an analytic shape.
+  int unshaded_by_itself = -2;  ///< The number of a shape that cannot shade itself; -2 is no shape, nor no target.
 };
 
 /// Rounded outward: a float box must hold what was bounded in double.
@@ -26,8 +29,7 @@ void set_bounds(const Box3d& box, RTCBounds& out) {
   out = {down(box.min.x), down(box.min.y), down(box.min.z), 0, up(box.max.x), up(box.max.y), up(box.max.z), 0};
 }
 
-void analytic_bounds(const RTCBoundsFunctionArguments* args) {
-  const auto& shape = *static_cast<const GeometryUser*>(args->geometryUserPtr)->analytic;
+RTCBounds bounds_of(const AnalyticShape& shape) {
   const Box3d object = shape.object_bounds();
   Box3d box;
   for (int c = 0; c < 8; ++c) {
@@ -35,7 +37,38 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
                                  {c & 1 ? object.max.x : object.min.x, c & 2 ? object.max.y : object.min.y,
                                   c & 4 ? object.max.z : object.min.z}));
   }
-  set_bounds(box, *args->bounds_o);
+  RTCBounds out;
+  set_bounds(box, out);
+  return out;
+}
+
+void analytic_bounds(const RTCBoundsFunctionArguments* args) {
+  *args->bounds_o = static_cast<const GeometryUser*>(args->geometryUserPtr)->bounds;
+}
+
+/// Whether any valid ray reaches a box. Embree asks this of the boxes of a tree, but not where one shape is all there
+/// is in it; a callback that begins in double precision costs ten times as much. A NaN counts as reaching.
+bool reaches(const RTCRayN* const_rays, const int* valid, unsigned width, const RTCBounds& box) {
+  RTCRayN* rays = const_cast<RTCRayN*>(const_rays);  // Embree's accessors know no const
+  const float *ox = &RTCRayN_org_x(rays, width, 0), *oy = &RTCRayN_org_y(rays, width, 0);
+  const float *oz = &RTCRayN_org_z(rays, width, 0), *dx = &RTCRayN_dir_x(rays, width, 0);
+  const float *dy = &RTCRayN_dir_y(rays, width, 0), *dz = &RTCRayN_dir_z(rays, width, 0);
+  const float *t_near = &RTCRayN_tnear(rays, width, 0), *t_far = &RTCRayN_tfar(rays, width, 0);
+  constexpr float kWiden = 1 + 1e-6f;
+  int any = 0;
+#pragma omp simd reduction(| : any)
+  for (unsigned i = 0; i < width; ++i) {
+    const auto low = [](float a, float b) { return b < a ? b : a; };
+    const auto high = [](float a, float b) { return b > a ? b : a; };
+    const float ix = 1 / dx[i], iy = 1 / dy[i], iz = 1 / dz[i];
+    const float x0 = (box.lower_x - ox[i]) * ix, x1 = (box.upper_x - ox[i]) * ix;
+    const float y0 = (box.lower_y - oy[i]) * iy, y1 = (box.upper_y - oy[i]) * iy;
+    const float z0 = (box.lower_z - oz[i]) * iz, z1 = (box.upper_z - oz[i]) * iz;
+    const float enter = high(high(low(x0, x1), low(y0, y1)), high(low(z0, z1), t_near[i]));
+    const float leave = low(low(high(x0, x1), high(y0, y1)), low(high(z0, z1), t_far[i]));
+    any |= valid[i] & -!(enter > leave * kWiden);
+  }
+  return any != 0;
 }
 
 /// The valid rays of an Embree packet in an analytic shape's object space.
@@ -65,6 +98,7 @@ struct ObjectPacket {
 template <class Accept>
 void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
                     const Accept& accept) {
+  if (!reaches(rays, valid, width, user.bounds)) return;
   ObjectPacket packet(rays, valid, width, *user.analytic);
   double t_far[kWidth];
   std::memcpy(t_far, packet.t, sizeof(double) * static_cast<size_t>(packet.n));
@@ -112,6 +146,7 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  if (static_cast<int>(RTCRayN_id(args->ray, args->N, 0)) == user.unshaded_by_itself) return;
   trace_analytic(user, args->ray, args->valid, args->N, true, [&](unsigned i, double) {
     RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
   });
@@ -209,6 +244,7 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
     ray.time[i] = 0;
     ray.tfar[i] = std::numeric_limits<float>::infinity();
     ray.mask[i] = 0xffffffffu;
+    ray.id[i] = static_cast<unsigned>(rays.target);
     ray.flags[i] = 0;
   }
   if (rays.t_max) copy(ray.tfar, rays.t_max);
@@ -221,6 +257,7 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
 struct Accel::Impl {
   RTCDevice device = nullptr;
   bool robust = true;
+  RayRecord* record = nullptr;
   struct Group {
     RTCScene scene = nullptr;
     int first_shape = 0;  ///< Shape index of geometry 0: a group's shapes are numbered without gaps.
@@ -240,7 +277,8 @@ struct Accel::Impl {
     return scene;
   }
   GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha, const CurveView& curves = {}) {
-    users.push_back(std::make_unique<GeometryUser>(GeometryUser{shape, alpha, curves}));
+    users.push_back(std::make_unique<GeometryUser>());
+    users.back()->analytic = shape, users.back()->alpha = alpha, users.back()->curves = curves;
     return users.back().get();
   }
   void set_alpha(RTCGeometry geometry, const AlphaTest* alpha) {
@@ -310,7 +348,10 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
 void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, const AlphaTest* alpha) {
   RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(g, 1);
-  rtcSetGeometryUserData(g, impl_->new_user(&geometry, alpha));
+  GeometryUser* const user = impl_->new_user(&geometry, alpha);
+  user->bounds = bounds_of(geometry);
+  if (geometry.cannot_shade_itself()) user->unshaded_by_itself = shape;
+  rtcSetGeometryUserData(g, user);
   rtcSetGeometryBoundsFunction(g, analytic_bounds, nullptr);
   rtcSetGeometryIntersectFunction(g, analytic_intersect);
   rtcSetGeometryOccludedFunction(g, analytic_occluded);
@@ -342,6 +383,7 @@ std::string Accel::build() {
 }
 
 void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+  if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
   const RTCScene scene = impl_->groups[kWorld].scene;
   const int world_first = impl_->groups[kWorld].first_shape;
   const int world_shapes = impl_->groups[kWorld].shape_count;
@@ -355,7 +397,7 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
-    query.intersect16(valid, scene, packet);
+    query.trace(valid, scene, packet);
     const size_t bytes = sizeof(float) * static_cast<size_t>(count);
     std::memcpy(hits.t + first, packet.ray.tfar, bytes);
     std::memcpy(hits.u + first, packet.hit.u, bytes);
@@ -378,19 +420,26 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
   }
 }
 
-void Accel::occluded(const RayLanes& rays, uint8_t* blocked, bool coherent) const {
+void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
+  if (impl_->record) impl_->record->add(RayKind::Shadow, rays);
   const RTCScene scene = impl_->groups[kWorld].scene;
-  // Embree 3.13.5 never returns from a coherent packet of occlusion rays that meets an instance.
-  EmbreeQuery query(coherent && impl_->instance_group.empty());
+  // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
+  EmbreeQuery query(false);
   alignas(64) RTCRay16 packet;
   alignas(64) int valid[kWidth];
   for (int first = 0; first < rays.n; first += kWidth) {
     const int count = std::min(kWidth, rays.n - first);
     load_packet(rays, first, count, packet, valid);
-    query.occluded16(valid, scene, packet);
+    query.trace(valid, scene, packet);
     for (int i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
   }
 }
+
+void Accel::record(RayRecord* record) { impl_->record = record; }
+
+bool Accel::has_instances() const { return !impl_->instance_group.empty(); }
+
+void* Accel::embree_scene() const { return impl_->groups[kWorld].scene; }
 
 size_t Accel::bytes() const { return static_cast<size_t>(std::max<ssize_t>(0, impl_->bytes)); }
 

@@ -21,6 +21,8 @@ struct RayLanes {
   Vec3Lanes o, d;
   const float* t_max = nullptr;  ///< Null: infinite.
   const float* time = nullptr;   ///< In [0,1] over the transform times; null: 0.
+  /// Shadow rays: the shape of the light they all end on, which is not in their way if it cannot shade itself.
+  int target = -1;
 };
 
 /// The nearest hits of n rays.
@@ -57,6 +59,8 @@ struct AccelOptions {
   bool robust = true;  ///< Watertight traversal.
 };
 
+class RayRecord;
+
 class Accel {
  public:
   explicit Accel(const AccelOptions& options);
@@ -78,10 +82,17 @@ class Accel {
   /// Builds the acceleration structures. Returns an error text, "" when all went well.
   std::string build();
 
-  /// `coherent`: neighbouring rays are alike (camera rays, shadow rays to one light).
+  /// `coherent`: neighbouring rays are alike (camera rays).
   void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
   /// Writes 1 where something is hit before t_max, else 0.
-  void occluded(const RayLanes& rays, uint8_t* blocked, bool coherent) const;
+  void occluded(const RayLanes& rays, uint8_t* blocked) const;
+
+  /// Keeps every ray that is traced from now on (one thread only); null ends it. For core/accel/replay.h.
+  void record(RayRecord* record);
+  /// True when something is instanced. Embree 3.13.5 then never returns from a coherent packet of occlusion rays.
+  bool has_instances() const;
+  /// Embree's scene of the world, an RTCScene.
+  void* embree_scene() const;
 
   /// Bytes Embree holds.
   size_t bytes() const;

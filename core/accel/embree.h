@@ -9,7 +9,8 @@
 
 namespace whit {
 
-/// One thread's queries with one coherence hint.
+/// One thread's queries with one coherence hint. trace() finds nearest hits for RTCRayHit and its packets, and
+/// occlusion for RTCRay and its packets; `valid` has -1 for lanes to trace, 0 for others.
 class EmbreeQuery {
  public:
 #if RTC_VERSION_MAJOR >= 4
@@ -20,12 +21,12 @@ class EmbreeQuery {
     intersect_.flags = flags;
     occluded_.flags = flags;
   }
-  void intersect16(const int* valid, RTCScene scene, RTCRayHit16& packet) {
-    rtcIntersect16(valid, scene, &packet, &intersect_);
-  }
-  void occluded16(const int* valid, RTCScene scene, RTCRay16& packet) {
-    rtcOccluded16(valid, scene, &packet, &occluded_);
-  }
+  void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &rays, &intersect_); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &rays, &intersect_); }
+  void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
+  void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays, &occluded_); }
+  void trace(const int* valid, RTCScene scene, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays, &occluded_); }
 
  private:
   RTCIntersectArguments intersect_;
@@ -35,12 +36,12 @@ class EmbreeQuery {
     rtcInitIntersectContext(&context_);
     context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
-  void intersect16(const int* valid, RTCScene scene, RTCRayHit16& packet) {
-    rtcIntersect16(valid, scene, &context_, &packet);
-  }
-  void occluded16(const int* valid, RTCScene scene, RTCRay16& packet) {
-    rtcOccluded16(valid, scene, &context_, &packet);
-  }
+  void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &context_, &rays); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &context_, &rays); }
+  void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
+  void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &context_, &rays); }
+  void trace(const int* valid, RTCScene scene, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
 
  private:
   RTCIntersectContext context_;

@@ -29,8 +29,13 @@ inline float luminance(const RGB& c) { return 0.212671f * c.x + 0.715160f * c.y 
 
 inline bool is_black(const RGB& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
-/// The affine map of a point, w ignored (every matrix of a scene file is used affinely but for cameras).
-inline Vec3d transform_point(const Mat4d& m, const Vec3d& p) { return p * m; }
+/// The image of a point, divided by w where the matrix is not affine.
+inline Vec3d transform_point(const Mat4d& m, const Vec3d& p) {
+  const auto row = [&](int c) { return p.x * m[0][c] + p.y * m[1][c] + p.z * m[2][c] + m[3][c]; };
+  const Vec3d out(row(0), row(1), row(2));
+  const double w = row(3);
+  return w == 1 ? out : out / w;
+}
 
 /// The linear part applied to a direction.
 inline Vec3d transform_vector(const Mat4d& m, const Vec3d& v) {

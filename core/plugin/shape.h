@@ -105,6 +105,10 @@ class AnalyticShape : public Shape {
   /// Finds the nearest hits, without cancellation: t within 2 ulp of the exact root.
   virtual void intersect(const ObjectRays& rays) const = 0;
 
+  /// True when no line that arrives at the front of the shape has met the shape before, as with convex shapes that face
+  /// outward: shadow rays to it then need not be tested against it.
+  virtual bool cannot_shade_itself() const { return false; }
+
   /// The local geometry at a hit: `p` is the computed hit point in object space.
   virtual SurfacePoint surface(const Vec3d& p) const = 0;
 

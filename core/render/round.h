@@ -38,7 +38,8 @@ class Round final : public RayRound {
   void sample_emitter(const SceneLight& light, const LightSamples& samples) const;
   void sample_triangle(const SceneLight& light, const LightSamples& samples) const;
   void sample_analytic(const SceneLight& light, const LightSamples& samples) const;
-  void add_unshadowed(const LightSamples& samples, const RGBLanes& contribution);
+  void scatter(const LightSamples& samples, const RGBLanes& f);
+  void add_unshadowed(const SceneLight& light, const LightSamples& samples, const RGBLanes& contribution);
 
   struct Spawned {
     Vec3Lanes wi;

@@ -23,6 +23,7 @@ constexpr float kShadowShortening = 1 - 4e-6f;
 void Round::add_direct(int number) {
   const int n = hits_.n;
   if (std::none_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.scatters; })) return;
+  const StageScope stage(worker_.clock(), Stage::LightSampling);
   ArenaScope scope(arena_);
   const SceneLight& light = scene_.lights[static_cast<size_t>(number)];
   LightSamples samples;
@@ -42,6 +43,13 @@ void Round::add_direct(int number) {
     sample_emitter(light, samples);
   }
   const RGBLanes f = arena_.rgb(n);
+  scatter(samples, f);
+  add_unshadowed(light, samples, f);
+}
+
+/// What the lobes send to the camera of each sample's light: f |cos| times its radiance.
+void Round::scatter(const LightSamples& samples, const RGBLanes& f) {
+  const StageScope stage(worker_.clock(), Stage::Lobes);
   for (const Run& run : runs_) {
     const RGBLanes out = f.from(run.first);
     if (run.scatters) {
@@ -50,16 +58,16 @@ void Round::add_direct(int number) {
       for_lanes(run.points.n, [&](int i) { out.set(i, RGB(0.0f)); });
     }
   }
-  for_lanes(n, [&](int i) {
+  for_lanes(samples.n, [&](int i) {
     f.r[i] *= samples.radiance.r[i];
     f.g[i] *= samples.radiance.g[i];
     f.b[i] *= samples.radiance.b[i];
   });
-  add_unshadowed(samples, f);
 }
 
 /// Traces shadow rays for the points that the light would reach, and adds the light of those it does.
-void Round::add_unshadowed(const LightSamples& samples, const RGBLanes& contribution) {
+void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples, const RGBLanes& contribution) {
+  const StageScope stage(worker_.clock(), Stage::Shadow);
   int32_t* lanes = arena_.alloc<int32_t>(hits_.n);
   int n = 0;
   for (int i = 0; i < hits_.n; ++i) {
@@ -83,7 +91,9 @@ void Round::add_unshadowed(const LightSamples& samples, const RGBLanes& contribu
     gather(lanes, n, hits_.time, time);
   }
   uint8_t* blocked = arena_.alloc<uint8_t>(n);
-  scene_.accel->occluded({n, o, d, t_max, time}, blocked, true);
+  // The back of a two-sided light is seen past its front.
+  const int target = light.light || light.two_sided ? -1 : light.shape;
+  scene_.accel->occluded({n, o, d, t_max, time, target}, blocked);
   worker_.statistics.shadow_rays += n;
   for (int i = 0; i < n; ++i) {
     const int to = lanes[i];

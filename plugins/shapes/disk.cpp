@@ -39,6 +39,8 @@ struct Disk final : AnalyticShape {
 
   Box3d object_bounds() const override { return {{-r_, -r_, h_}, {r_, r_, h_}}; }
 
+  bool cannot_shade_itself() const override { return true; }
+
   void intersect(const ObjectRays& rays) const override {
     for (int i = 0; i < rays.n; ++i) {
       // A ray in the disk's plane divides by 0; the infinity or NaN fails the next comparison.

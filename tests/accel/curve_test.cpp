@@ -181,7 +181,7 @@ TEST(Curve, HitsThroughTheRayTracerNameTheirSegment) {
   for (int i = 0; i < kRays; ++i) ox[i] = 0.125f + 0.25f * static_cast<float>(i), oz[i] = 4, dz[i] = -1;
   const RayLanes rays{kRays, {ox, zero, oz}, {zero, zero, dz}};
   accel.intersect(rays, {t, shape, prim, instance, u, v}, true);
-  accel.occluded(rays, blocked, true);
+  accel.occluded(rays, blocked);
   for (int i = 0; i < kRays; ++i) {
     const bool on = ox[i] < 9;
     EXPECT_EQ(shape[i], on ? 7 : -1) << i;
@@ -210,7 +210,7 @@ TEST(Curve, AnInstanceIsTracedCoherentlyWithoutEnd) {
     ox[i] = 0.125f + 0.25f * static_cast<float>(i), oy[i] = 0.3f, oz[i] = 4, dz[i] = -1;
   }
   const RayLanes rays{kRays, {ox, oy, oz}, {zero, zero, dz}};
-  accel.occluded(rays, blocked, true);
+  accel.occluded(rays, blocked);
   accel.intersect(rays, {t, shape, prim, instance, u, v}, true);
   for (int i = 0; i < kRays; ++i) {
     const bool on = ox[i] > 1 && ox[i] < 7;
