@@ -81,7 +81,6 @@ std::string_view written_type(ParamType type) {
   switch (type) {
     case ParamType::Point3: return "point";
     case ParamType::Vector3: return "vector";
-    case ParamType::Normal3: return "normal";
     default: return param_type_name(type);
   }
 }

@@ -12,7 +12,7 @@ const char* param_type_name(ParamType type) {
     case ParamType::Point3: return "point3";
     case ParamType::Vector2: return "vector2";
     case ParamType::Vector3: return "vector3";
-    case ParamType::Normal3: return "normal3";
+    case ParamType::Normal3: return "normal";
     case ParamType::Rgb: return "rgb";
     case ParamType::Xyz: return "xyz";
     case ParamType::Blackbody: return "blackbody";

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <system_error>
 #include <type_traits>
 
@@ -38,6 +39,20 @@ std::string number_text(Number v) {
   const auto [end, code] = std::to_chars(buffer, buffer + sizeof buffer, v);
   return code == std::errc() ? std::string(buffer, end) : std::string("?");
 }
+
+}  // namespace
+
+std::string range_text(const Range& r) {
+  const bool low = std::isfinite(r.min), high = std::isfinite(r.max);
+  // The smallest positive number stands for an open end, see kPositive.
+  const bool positive = r.min == kPositive.min || r.min == static_cast<double>(std::numeric_limits<float>::min());
+  if (low && high)
+    return (positive ? "above 0 and at most " : "between " + number_text(r.min) + " and ") + number_text(r.max);
+  if (low) return positive ? "above 0" : "at least " + number_text(r.min);
+  return high ? "at most " + number_text(r.max) : "any number";
+}
+
+namespace {
 
 std::string vector_text(const Vec3d& v) { return number_text(v.x) + ' ' + number_text(v.y) + ' ' + number_text(v.z); }
 
@@ -73,16 +88,6 @@ Count count_values(const Parameter& p, const BindContext& ctx, size_t numbers, s
                            called(p, ctx) + " takes one value, not " + std::to_string(numbers / numbers_each),
                            "the parameter is ignored, as in pbrt-v3");
   return Count::Several;
-}
-
-std::string range_text(const Range& r) {
-  const bool low = std::isfinite(r.min), high = std::isfinite(r.max);
-  // The smallest positive number stands for an open end, see kPositive.
-  const bool positive = r.min == kPositive.min;
-  if (low && high)
-    return (positive ? "above 0 and at most " : "between " + number_text(r.min) + " and ") + number_text(r.max);
-  if (high) return "at most " + number_text(r.max);
-  return positive ? "above 0" : "at least " + number_text(r.min);
 }
 
 /// Checks a number as it will be used: rounded to Stored (float or double).
@@ -226,13 +231,12 @@ bool read_triple(const Parameter& p, const BindContext& ctx, Vec3d& out) {
   return true;
 }
 
-/// One member type: its name in docs, the parameter types it accepts, its text and how it is read.
+/// One member type: the parameter types it accepts, its text and how it is read.
 template <class T>
 struct Kind;
 
 template <>
 struct Kind<float> {
-  static constexpr const char* name = "float";
   static constexpr ParamType accepts[] = {ParamType::Float};
   static std::string text(float v) { return number_text(v); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, float& out) {
@@ -242,7 +246,6 @@ struct Kind<float> {
 
 template <>
 struct Kind<std::optional<float>> {
-  static constexpr const char* name = "float";
   static constexpr ParamType accepts[] = {ParamType::Float};
   static std::string text(const std::optional<float>& v) { return v ? number_text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<float>& out) {
@@ -256,7 +259,6 @@ struct Kind<std::optional<float>> {
 
 template <>
 struct Kind<int> {
-  static constexpr const char* name = "integer";
   static constexpr ParamType accepts[] = {ParamType::Integer};
   static std::string text(int v) { return number_text(v); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, int& out) {
@@ -270,7 +272,6 @@ struct Kind<int> {
 
 template <>
 struct Kind<bool> {
-  static constexpr const char* name = "bool";
   static constexpr ParamType accepts[] = {ParamType::Bool};
   static std::string text(bool v) { return v ? "true" : "false"; }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, bool& out) {
@@ -283,7 +284,6 @@ struct Kind<bool> {
 
 template <>
 struct Kind<std::optional<bool>> {
-  static constexpr const char* name = "bool";
   static constexpr ParamType accepts[] = {ParamType::Bool};
   static std::string text(const std::optional<bool>& v) { return v ? Kind<bool>::text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<bool>& out) {
@@ -297,7 +297,6 @@ struct Kind<std::optional<bool>> {
 
 template <>
 struct Kind<std::string> {
-  static constexpr const char* name = "string";
   static constexpr ParamType accepts[] = {ParamType::String};
   static std::string text(const std::string& v) { return '"' + v + '"'; }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, std::string& out) {
@@ -310,7 +309,6 @@ struct Kind<std::string> {
 
 template <>
 struct Kind<FileName> {
-  static constexpr const char* name = "string";
   static constexpr ParamType accepts[] = {ParamType::String};
   static std::string text(const FileName& v) { return v.empty() ? std::string() : '"' + v.as_given + '"'; }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, FileName& out) {
@@ -328,7 +326,6 @@ struct Kind<FileName> {
 
 template <>
 struct Kind<RGB> {
-  static constexpr const char* name = "spectrum";
   static constexpr ParamType accepts[] = {ParamType::Rgb, ParamType::Xyz, ParamType::Blackbody, ParamType::Spectrum};
   static std::string text(const RGB& c) { return number_text(c.x) + ' ' + number_text(c.y) + ' ' + number_text(c.z); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, RGB& out) {
@@ -338,7 +335,6 @@ struct Kind<RGB> {
 
 template <>
 struct Kind<Point> {
-  static constexpr const char* name = "point3";
   static constexpr ParamType accepts[] = {ParamType::Point3};
   static std::string text(const Point& v) { return vector_text(v.value); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, Point& out) {
@@ -348,7 +344,6 @@ struct Kind<Point> {
 
 template <>
 struct Kind<Vector> {
-  static constexpr const char* name = "vector3";
   static constexpr ParamType accepts[] = {ParamType::Vector3};
   static std::string text(const Vector& v) { return vector_text(v.value); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, Vector& out) {
@@ -358,7 +353,6 @@ struct Kind<Vector> {
 
 template <>
 struct Kind<Tex<float>> {
-  static constexpr const char* name = "float texture";
   static constexpr ParamType accepts[] = {ParamType::Float, ParamType::Texture};
   static std::string text(const Tex<float>& v) { return v.is_constant() ? number_text(v.value()) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, Tex<float>& out) {
@@ -372,7 +366,6 @@ struct Kind<Tex<float>> {
 
 template <>
 struct Kind<std::optional<Tex<float>>> {
-  static constexpr const char* name = Kind<Tex<float>>::name;
   static constexpr ParamType accepts[] = {ParamType::Float, ParamType::Texture};
   static std::string text(const std::optional<Tex<float>>& v) { return v ? Kind<Tex<float>>::text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<float>>& out) {
@@ -387,7 +380,6 @@ struct Kind<std::optional<Tex<float>>> {
 /// The name of a material.
 template <>
 struct Kind<std::shared_ptr<Material>> {
-  static constexpr const char* name = "string";
   static constexpr ParamType accepts[] = {ParamType::String};
   static std::string text(const std::shared_ptr<Material>&) { return {}; }
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, std::shared_ptr<Material>& out) {
@@ -402,7 +394,6 @@ struct Kind<std::shared_ptr<Material>> {
 
 template <>
 struct Kind<Tex<RGB>> {
-  static constexpr const char* name = "spectrum texture";
   static constexpr ParamType accepts[] = {ParamType::Rgb, ParamType::Xyz, ParamType::Blackbody, ParamType::Spectrum,
                                           ParamType::Texture};
   static std::string text(const Tex<RGB>& v) { return v.is_constant() ? Kind<RGB>::text(v.value()) : std::string(); }
@@ -417,7 +408,6 @@ struct Kind<Tex<RGB>> {
 
 template <>
 struct Kind<std::optional<Tex<RGB>>> {
-  static constexpr const char* name = Kind<Tex<RGB>>::name;
   static constexpr auto& accepts = Kind<Tex<RGB>>::accepts;
   static std::string text(const std::optional<Tex<RGB>>& v) { return v ? Kind<Tex<RGB>>::text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<RGB>>& out) {
@@ -434,7 +424,6 @@ struct Kind<std::optional<Tex<RGB>>> {
 template <class L, ParamType Type, size_t Each>
 struct ListKind {
   static constexpr ParamType accepts[] = {Type};
-  static constexpr const char* name = nullptr;  // the parameter type's own
   static std::string text(const L&) { return {}; }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, L& out) {
     if constexpr (Type == ParamType::Integer) return read_list(p, ctx, range, p.integers(), Each, out);
@@ -458,10 +447,6 @@ struct Kind<NormalList> : ListKind<NormalList, ParamType::Normal3, 3> {};
 
 namespace detail {
 
-template <class T>
-const char* Binding<T>::type_name() {
-  return Kind<T>::name ? Kind<T>::name : param_type_name(Kind<T>::accepts[0]);
-}
 template <class T>
 std::vector<ParamType> Binding<T>::accepts() {
   return {std::begin(Kind<T>::accepts), std::end(Kind<T>::accepts)};

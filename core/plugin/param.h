@@ -35,6 +35,7 @@ inline constexpr Range kAny{};
 inline constexpr Range kNonNegative{0.0};
 inline constexpr Range kPositive{std::numeric_limits<double>::min()};
 inline constexpr Range kUnit{0.0, 1.0};
+std::string range_text(const Range& range);  ///< "above 0", "between 0 and 1", ...
 
 /// A point or vector parameter in double precision, as the file gives it.
 struct Point {
@@ -96,8 +97,7 @@ struct BindContext {
 /// One declared parameter of a plugin class, type-erased.
 struct ParamSpec {
   std::string name;
-  std::string type;  ///< As a scene file and the docs spell it: "float texture", "string", ...
-  std::vector<ParamType> accepts;
+  std::vector<ParamType> accepts;  ///< The types it may be declared with, the usual one first.
   std::string default_text;
   Unit unit = Unit::None;
   Range range;
@@ -113,7 +113,6 @@ namespace detail {
 /// How a member type is read from a parameter. Specialised in param.cpp for every supported type.
 template <class T>
 struct Binding {
-  static const char* type_name();
   static std::vector<ParamType> accepts();
   static std::string to_text(const T& value);
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, T& out);
@@ -156,7 +155,6 @@ DeclaredParam<Class, T> declare(T Class::*member, const char* name, T default_va
                                 Range range) {
   DeclaredParam<Class, T> d{member, std::move(default_value), {}};
   d.spec.name = name;
-  d.spec.type = Binding<T>::type_name();
   d.spec.accepts = Binding<T>::accepts();
   d.spec.unit = unit;
   d.spec.range = range;
@@ -188,7 +186,6 @@ DeclaredParam<Class, Choice> choice(Choice Class::*member, const char* name, std
                                     const char* doc) {
   DeclaredParam<Class, Choice> d{member, Choice{0}, {}};
   d.spec.name = name;
-  d.spec.type = "string";
   d.spec.accepts = {ParamType::String};
   d.spec.default_text = '"' + choices.front() + '"';
   d.spec.doc = doc;

@@ -55,10 +55,6 @@ bool has_no_area(const double* a, const double* b, const double* c) {
 namespace detail {
 
 template <>
-const char* Binding<UvList>::type_name() {
-  return "point2";
-}
-template <>
 std::vector<ParamType> Binding<UvList>::accepts() {
   return {ParamType::Point2, ParamType::Float};
 }

@@ -146,7 +146,11 @@ class Usage(Case):
         for word in ("whit [render]", "perfectglass", "skybox", "trianglemesh"):
             self.assertIn(word, overview)
         matte = self.good("help", "material", "matte")
-        self.assertRegex(matte, r'"float texture sigma"  \(default 0, degrees\)')
+        self.assertRegex(matte, r'"float sigma" or "texture sigma"  \(default 0, degrees\)')
+        self.assertIn('"float fov"  (default 90, degrees, above 0 and at most 179.999)\n',
+                      self.good("help", "camera", "perspective"))
+        # Every vertex is allowed, so no range is printed.
+        self.assertIn('"point3 P"  (scene length)\n', self.good("help", "shape", "trianglemesh"))
         self.assertIn("xresolution", self.good("help", "film"))
         self.assertIn("tex1", self.good("help", "float", "texture", "scale"))
         self.fails(2, 'did you mean "matte"', "help", "material", "mate")

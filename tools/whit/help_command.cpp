@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <set>
 
 #include "core/plugin/registry.h"
@@ -26,35 +26,43 @@ void print_overview() {
   }
 }
 
-std::string range_text(const Range& r) {
-  const bool low = std::isfinite(r.min), high = std::isfinite(r.max);
-  if (!low && !high) return {};
-  if (low && r.min > 0 && r.min < 1e-300) return high ? fmt::format("above 0, at most {:g}", r.max) : "above 0";
-  if (low && high) return fmt::format("{:g} to {:g}", r.min, r.max);
-  return low ? fmt::format("at least {:g}", r.min) : fmt::format("at most {:g}", r.max);
+/// True for the types that go wherever "rgb" does.
+bool is_other_colour(ParamType t) {
+  return t == ParamType::Xyz || t == ParamType::Blackbody || t == ParamType::Spectrum;
+}
+
+/// The range, or "" where every float is allowed.
+std::string limits_text(const Range& r) {
+  constexpr double most = std::numeric_limits<float>::max();
+  return r.min <= -most && r.max >= most ? std::string() : range_text(r);
 }
 
 void print_param(const ParamSpec& p) {
-  std::string facts;
+  std::string declared, facts;
+  for (const ParamType type : p.accepts) {
+    if (is_other_colour(type)) continue;
+    declared += fmt::format("{}\"{} {}\"", declared.empty() ? "" : " or ", param_type_name(type), p.name);
+  }
   const auto fact = [&](const std::string& f) {
     if (!f.empty()) facts += (facts.empty() ? "" : ", ") + f;
   };
   if (!p.default_text.empty()) fact("default " + p.default_text);
   fact(unit_name(p.unit));
-  fact(range_text(p.range));
-  if (!p.choices.empty()) {
-    std::string all;
-    for (const std::string& c : p.choices) all += (all.empty() ? "" : " ") + c;
-    fact("one of " + all);
-  }
-  fmt::print("  \"{} {}\"{}\n      {}\n", p.type, p.name, facts.empty() ? "" : "  (" + facts + ")", p.doc);
+  fact(limits_text(p.range));
+  if (!p.choices.empty()) fact(fmt::format("one of {}", fmt::join(p.choices, " ")));
+  fmt::print("  {}{}\n      {}\n", declared, facts.empty() ? "" : "  (" + facts + ")", p.doc);
 }
 
 void print_plugin(const PluginInfo& p) {
   std::string aliases;
   for (const std::string& a : p.aliases) aliases += fmt::format(", also \"{}\"", a);
   fmt::print("{} \"{}\"{}: {}\n", p.category, p.name, aliases, p.doc);
-  for (const ParamSpec& spec : p.params) print_param(spec);
+  bool colours = false;
+  for (const ParamSpec& spec : p.params) {
+    print_param(spec);
+    colours |= std::any_of(spec.accepts.begin(), spec.accepts.end(), is_other_colour);
+  }
+  if (colours) fmt::print("  (\"rgb\" may also be \"xyz\", \"blackbody\" or \"spectrum\")\n");
 }
 
 std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }
