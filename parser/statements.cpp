@@ -10,59 +10,104 @@ namespace whit {
 
 namespace {
 
-constexpr Arguments nothing() { return {}; }
-constexpr Arguments numbers(uint8_t n) { return {0, 0, false, n, false}; }
-constexpr Arguments names(uint8_t least, uint8_t most) { return {least, most, false, 0, false}; }
-constexpr Arguments name() { return names(1, 1); }
-constexpr Arguments word() { return {0, 0, true, 0, false}; }
-constexpr Arguments plugin(uint8_t strings = 1) { return {strings, strings, false, 0, true}; }
+constexpr ArgumentRule nothing() { return {}; }
+constexpr ArgumentRule numbers(uint8_t n, std::string_view usage) { return {0, 0, false, n, false, usage}; }
+constexpr ArgumentRule name(std::string_view usage = "\"name\"") { return {1, 1, false, 0, false, usage}; }
+constexpr ArgumentRule media() { return {1, 2, false, 0, false, "\"inside\" \"outside\""}; }
+constexpr ArgumentRule word(std::string_view usage) { return {0, 0, true, 0, false, usage}; }
+constexpr ArgumentRule plugin(std::string_view usage = "\"plugin\" parameters") {
+  return {1, 1, false, 0, true, usage};
+}
+constexpr ArgumentRule texture() {
+  return {3, 3, false, 0, true, "\"name\" (\"float\" | \"spectrum\") \"plugin\" parameters"};
+}
+constexpr ArgumentRule named() { return plugin("\"name\" \"string type\" [\"plugin\"] parameters"); }
+constexpr ArgumentRule matrix() { return numbers(16, "[m00 m10 m20 m30 ... m33]"); }
 
 using B = SceneBuilder;
 
 // clang-format off
 constexpr StatementRow kStatements[] = {
-    {"Identity",           nothing(),   Block::Both,    &B::identity},
-    {"Translate",          numbers(3),  Block::Both,    &B::translate},
-    {"Scale",              numbers(3),  Block::Both,    &B::scale},
-    {"Rotate",             numbers(4),  Block::Both,    &B::rotate},
-    {"LookAt",             numbers(9),  Block::Both,    &B::look_at},
-    {"Transform",          numbers(16), Block::Both,    &B::transform},
-    {"ConcatTransform",    numbers(16), Block::Both,    &B::concat_transform},
-    {"CoordinateSystem",   name(),      Block::Both,    &B::coordinate_system},
-    {"CoordSysTransform",  name(),      Block::Both,    &B::coord_sys_transform},
-    {"ActiveTransform",    word(),      Block::Both,    &B::active_transform},
-    {"TransformTimes",     numbers(2),  Block::Options, &B::transform_times},
+    {"Identity", nothing(), Block::Both, &B::identity,
+     "Forgets the transforms so far."},
+    {"Translate", numbers(3, "x y z"), Block::Both, &B::translate,
+     "Moves what follows."},
+    {"Scale", numbers(3, "x y z"), Block::Both, &B::scale,
+     "Scales what follows, axis by axis; an odd number of negative factors mirrors."},
+    {"Rotate", numbers(4, "degrees x y z"), Block::Both, &B::rotate,
+     "Turns what follows about an axis through the origin."},
+    {"LookAt", numbers(9, "eye_x eye_y eye_z at_x at_y at_z up_x up_y up_z"), Block::Both, &B::look_at,
+     "Before Camera: places it at the eye, looking at a point, with the direction up at the picture's top."},
+    {"Transform", matrix(), Block::Both, &B::transform,
+     "Replaces the transforms so far by a matrix, column by column: the translation stands last."},
+    {"ConcatTransform", matrix(), Block::Both, &B::concat_transform,
+     "Applies a matrix to what follows."},
+    {"CoordinateSystem", name(), Block::Both, &B::coordinate_system,
+     "Names the current transform."},
+    {"CoordSysTransform", name(), Block::Both, &B::coord_sys_transform,
+     "Takes up a named transform. In the world block \"camera\" and \"world\" are there."},
+    {"ActiveTransform", word("All | StartTime | EndTime"), Block::Both, &B::active_transform,
+     "Whether transform statements change the start of the motion, its end, or both."},
+    {"TransformTimes", numbers(2, "start end"), Block::Options, &B::transform_times,
+     "The times, in seconds, at which motion starts and ends; by default 0 and 1."},
 
-    {"Accelerator",        plugin(),    Block::Options, &B::accelerator},
-    {"Camera",             plugin(),    Block::Options, &B::camera},
-    {"Film",               plugin(),    Block::Options, &B::film},
-    {"Filter",             plugin(),    Block::Options, &B::pixel_filter},
-    {"PixelFilter",        plugin(),    Block::Options, &B::pixel_filter},
-    {"Integrator",         plugin(),    Block::Options, &B::integrator},
-    {"Sampler",            plugin(),    Block::Options, &B::sampler},
+    {"Accelerator", plugin(), Block::Options, &B::accelerator,
+     "Accepted; Embree builds its own."},
+    {"Camera", plugin(), Block::Options, &B::camera,
+     "The camera, at the origin, looking along +z: transforms before it move the world. Without one: perspective."},
+    {"Film", plugin(), Block::Options, &B::film,
+     "The picture: its size and file. Without one: image."},
+    {"Filter", plugin(), Block::Options, &B::pixel_filter,
+     "Another name of PixelFilter."},
+    {"PixelFilter", plugin(), Block::Options, &B::pixel_filter,
+     "How much samples count in the pixels around them. Without one: box."},
+    {"Integrator", plugin(), Block::Options, &B::integrator,
+     "What light does. Without one: whitted, which also stands in for every other."},
+    {"Sampler", plugin(), Block::Options, &B::sampler,
+     "How many samples a pixel has, and where. Without one: sobol."},
 
-    {"MakeNamedMedium",    plugin(),    Block::Both,    &B::make_named_medium},
-    {"MediumInterface",    names(1, 2), Block::Both,    &B::medium_interface},
-    {"Include",            name(),      Block::Both,    &B::include},
+    {"MakeNamedMedium", named(), Block::Both, &B::make_named_medium,
+     "Accepted; media are not simulated."},
+    {"MediumInterface", media(), Block::Both, &B::medium_interface,
+     "Accepted; media are not simulated."},
+    {"Include", name("\"file\""), Block::Both, &B::include,
+     "Reads a file as if it stood here. Its path starts at the folder of the main file."},
 
-    {"WorldBegin",         nothing(),   Block::Options, &B::begin_world},
-    {"WorldEnd",           nothing(),   Block::World,   &B::end_world},
-    {"AttributeBegin",     nothing(),   Block::World,   &B::begin_attribute, 1},
-    {"AttributeEnd",       nothing(),   Block::World,   &B::end_attribute, -1},
-    {"TransformBegin",     nothing(),   Block::World,   &B::begin_transform, 1},
-    {"TransformEnd",       nothing(),   Block::World,   &B::end_transform, -1},
-    {"ObjectBegin",        name(),      Block::World,   &B::begin_object, 1},
-    {"ObjectEnd",          nothing(),   Block::World,   &B::end_object, -1},
-    {"ObjectInstance",     name(),      Block::World,   &B::object_instance},
-    {"ReverseOrientation", nothing(),   Block::World,   &B::reverse_orientation},
+    {"WorldBegin", nothing(), Block::Options, &B::begin_world,
+     "Ends the options, forgets the transforms and begins the scene."},
+    {"WorldEnd", nothing(), Block::World, &B::end_world,
+     "Ends the scene. Options and a WorldBegin may follow, for another picture."},
+    {"AttributeBegin", nothing(), Block::World, &B::begin_attribute,
+     "Remembers transform, material, area light, orientation, and what names stand for.", 1},
+    {"AttributeEnd", nothing(), Block::World, &B::end_attribute,
+     "Goes back to what the last AttributeBegin remembered.", -1},
+    {"TransformBegin", nothing(), Block::World, &B::begin_transform,
+     "Remembers the transform.", 1},
+    {"TransformEnd", nothing(), Block::World, &B::end_transform,
+     "Goes back to what the last TransformBegin remembered.", -1},
+    {"ObjectBegin", name(), Block::World, &B::begin_object,
+     "Begins an object, whose shapes appear where ObjectInstance says. Remembers as AttributeBegin does.", 1},
+    {"ObjectEnd", nothing(), Block::World, &B::end_object,
+     "Ends the object.", -1},
+    {"ObjectInstance", name(), Block::World, &B::object_instance,
+     "Places an object."},
+    {"ReverseOrientation", nothing(), Block::World, &B::reverse_orientation,
+     "Turns the normals of the shapes that follow, and so the side on which area lights shine."},
 
-    {"Texture",            plugin(3),   Block::World,   &B::texture},
-    {"Material",           plugin(),    Block::World,   &B::material},
-    {"MakeNamedMaterial",  plugin(),    Block::World,   &B::make_named_material},
-    {"NamedMaterial",      name(),      Block::World,   &B::named_material},
-    {"LightSource",        plugin(),    Block::World,   &B::light_source},
-    {"AreaLightSource",    plugin(),    Block::World,   &B::area_light_source},
-    {"Shape",              plugin(),    Block::World,   &B::shape},
+    {"Texture", texture(), Block::World, &B::texture,
+     "Makes a texture, which parameters of what follows can name."},
+    {"Material", plugin(), Block::World, &B::material,
+     "The material of the shapes that follow. Without one: matte."},
+    {"MakeNamedMaterial", named(), Block::World, &B::make_named_material,
+     "Makes a material for NamedMaterial to name."},
+    {"NamedMaterial", name(), Block::World, &B::named_material,
+     "Gives the shapes that follow a named material."},
+    {"LightSource", plugin(), Block::World, &B::light_source,
+     "A light."},
+    {"AreaLightSource", plugin(), Block::World, &B::area_light_source,
+     "Makes the shapes that follow shine. \"\" ends that, and so does AttributeEnd."},
+    {"Shape", plugin(), Block::World, &B::shape,
+     "A shape. Its parameters may include some of its material's, which hold for this shape."},
 };
 // clang-format on
 
@@ -147,7 +192,7 @@ void report_no_directive(Lexer& lexer, const Token& token) {
 std::string plural(size_t n, const std::string& thing) { return std::to_string(n) + " " + thing + (n == 1 ? "" : "s"); }
 
 bool read_names(Lexer& lexer, Statement& out) {
-  const Arguments& wanted = out.row->arguments;
+  const ArgumentRule& wanted = out.row->arguments;
   while (out.names.size() < wanted.max_strings && lexer.peek().kind == TokenKind::String) {
     const Token token = lexer.next();
     out.names_at.push_back(lexer.pos(token));
@@ -197,7 +242,7 @@ bool read_fixed_numbers(Lexer& lexer, Statement& out) {
 }
 
 bool read_arguments(Lexer& lexer, Statement& out) {
-  const Arguments& arguments = out.row->arguments;
+  const ArgumentRule& arguments = out.row->arguments;
   out.arguments_at = lexer.pos(lexer.peek());
   if (arguments.max_strings > 0 && !read_names(lexer, out)) return false;
   if (arguments.word && !read_word(lexer, out)) return false;
@@ -206,6 +251,8 @@ bool read_arguments(Lexer& lexer, Statement& out) {
 }
 
 }  // namespace
+
+std::span<const StatementRow> statements() { return kStatements; }
 
 const StatementRow* find_statement(std::string_view name) {
   static const auto* const rows = [] {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,20 +20,22 @@ struct Statement;
 enum class Block : uint8_t { Options, World, Both };
 
 /// What stands behind a directive, in this order: strings, a bare word, numbers, parameters.
-struct Arguments {
+struct ArgumentRule {
   uint8_t min_strings = 0, max_strings = 0;
   bool word = false;
   uint8_t numbers = 0;
   bool parameters = false;
+  std::string_view usage = {};  ///< The same for people.
 };
 
 /// One directive: its name, its arguments, where it is allowed, what it does.
 struct StatementRow {
   std::string_view name;
-  Arguments arguments;
+  ArgumentRule arguments;
   Block block;
   void (SceneBuilder::*handler)(Statement&);
-  int8_t nesting = 0;  ///< 1 when it opens a block, -1 when it closes one.
+  std::string_view doc;  ///< What it does, for people.
+  int8_t nesting = 0;    ///< 1 when it opens a block, -1 when it closes one.
 };
 
 /// A statement as it was read.
@@ -47,6 +50,9 @@ struct Statement {
   SourcePos arguments_at;  ///< The first argument, or the directive when there is none.
   ParameterList parameters;
 };
+
+/// The whole table.
+std::span<const StatementRow> statements();
 
 /// The row of a directive; null when there is no such directive.
 const StatementRow* find_statement(std::string_view name);

@@ -152,6 +152,7 @@ class Usage(Case):
         # Every vertex is allowed, so no range is printed.
         self.assertIn('"point3 P"  (scene length)\n', self.good("help", "shape", "trianglemesh"))
         self.assertIn("xresolution", self.good("help", "film"))
+        self.assertIn("\nTranslate x y z\n", self.good("help", "statement"))
         self.assertIn("tex1", self.good("help", "float", "texture", "scale"))
         self.fails(2, 'did you mean "matte"', "help", "material", "mate")
         self.fails(2, 'did you mean "material"', "help", "materiel")

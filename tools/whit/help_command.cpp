@@ -1,4 +1,4 @@
-// `whit help`: commands and plugins, from the same tables that run and parse them.
+// `whit help`: commands, plugins and statements, from the same tables that run and parse them.
 
 #include <fmt/format.h>
 
@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/plugin/registry.h"
+#include "parser/statements.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/terminal.h"
 
@@ -24,6 +25,7 @@ void print_overview() {
     for (const std::string& name : plugin_names(category)) names += (names.empty() ? "" : " ") + name;
     fmt::print("  {:<18} {}\n", category, names);
   }
+  fmt::print("\nwhit help statement shows the statements of a scene file\n");
 }
 
 /// True for the types that go wherever "rgb" does.
@@ -65,6 +67,13 @@ void print_plugin(const PluginInfo& p) {
   if (colours) fmt::print("  (\"rgb\" may also be \"xyz\", \"blackbody\" or \"spectrum\")\n");
 }
 
+void print_statements() {
+  for (const StatementRow& s : statements()) {
+    const char* const space = s.arguments.usage.empty() ? "" : " ";
+    fmt::print("{}{}{}\n    {}\n", s.name, space, s.arguments.usage, s.doc);
+  }
+}
+
 std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }
 
 }  // namespace
@@ -74,13 +83,17 @@ int help_command(const Arguments& args) {
     print_overview();
     return kDone;
   }
+  if (args[0] == "statement") {
+    print_statements();
+    return kDone;
+  }
   // A category may be two words: "float texture".
   std::string category = args[0];
   size_t used = 1;
   if (list_plugins(category).empty() && args.size() > 1) category += " " + args[1], used = 2;
   const auto plugins = list_plugins(category);
   if (plugins.empty()) {
-    std::vector<std::string> known;
+    std::vector<std::string> known{"statement"};
     for (const PluginInfo* p : list_plugins()) known.push_back(p->category);
     say(fmt::format("whit help: no category \"{}\"{}", args[0], remedy(did_you_mean(args[0], known))));
     return kUsage;
