@@ -140,6 +140,14 @@ class Usage(Case):
         self.fails(2, 'unknown view "nonsense".*"ACES SDR"', "a scene.pbrt", "--view", "nonsense", "--spp", "1000000")
         self.fails(2, 'view "exposure=1"', "a scene.pbrt", "--view", "exposure=1", "--spp", "1000000")
 
+    def test_help_for_machines(self):
+        known = json.loads(self.good("help", "--json"))
+        perspective = next(p for p in known["plugins"] if p["name"] == "perspective")
+        fov = next(p for p in perspective["parameters"] if p["name"] == "fov")
+        self.assertEqual((fov["types"], fov["default"], fov["unit"]), (["float"], "90", "degrees"))
+        self.assertEqual((fov["range"], fov["maximum"]), ("above 0 and at most 179.999", 179.999))
+        self.assertIn("Shape", [s["name"] for s in known["statements"]])
+
     def test_help_and_version(self):
         overview = self.good("help")
         self.assertEqual(overview, self.good("--help"))

@@ -17,7 +17,7 @@ int fmt_command(const Arguments& args);      ///< whit fmt SCENE
 int explain_command(const Arguments& args);  ///< whit explain SCENE
 int diff_command(const Arguments& args);     ///< whit diff A B
 int bench_command(const Arguments& args);    ///< whit bench [SCENES...]
-int help_command(const Arguments& args);     ///< whit help [CATEGORY [PLUGIN]]
+int help_command(const Arguments& args);     ///< whit help [CATEGORY [PLUGIN] | --json]
 
 /// A command's name, its function and one line of what it does: the table behind dispatch and help.
 struct Command {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/plugin/registry.h"
@@ -13,6 +15,10 @@
 
 namespace whit {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+// ---- For people ----
 
 void print_overview() {
   fmt::print("whit renders pbrt-v3 scene files with an Embree-accelerated Whitted integrator.\n\ncommands\n");
@@ -25,7 +31,7 @@ void print_overview() {
     for (const std::string& name : plugin_names(category)) names += (names.empty() ? "" : " ") + name;
     fmt::print("  {:<18} {}\n", category, names);
   }
-  fmt::print("\nwhit help statement shows the statements of a scene file\n");
+  fmt::print("\nwhit help statement shows the statements of a scene file; --json prints all this for machines\n");
 }
 
 /// True for the types that go wherever "rgb" does.
@@ -74,6 +80,48 @@ void print_statements() {
   }
 }
 
+// ---- For machines ----
+
+Json describe(const ParamSpec& p) {
+  Json j{{"name", p.name}, {"types", Json::array()}};
+  for (const ParamType type : p.accepts) j["types"].push_back(param_type_name(type));
+  if (!p.default_text.empty()) j["default"] = p.default_text;
+  if (p.unit != Unit::None) j["unit"] = unit_name(p.unit);
+  if (const std::string limits = limits_text(p.range); !limits.empty()) {
+    j["range"] = limits;
+    if (std::isfinite(p.range.min)) j["minimum"] = p.range.min;
+    if (std::isfinite(p.range.max)) j["maximum"] = p.range.max;
+  }
+  if (!p.choices.empty()) j["choices"] = p.choices;
+  j["doc"] = p.doc;
+  return j;
+}
+
+Json describe(const PluginInfo& p) {
+  Json j{{"category", p.category},
+         {"name", p.name},
+         {"aliases", p.aliases},
+         {"doc", p.doc},
+         {"parameters", Json::array()}};
+  for (const ParamSpec& spec : p.params) j["parameters"].push_back(describe(spec));
+  return j;
+}
+
+Json describe(const StatementRow& s) {
+  constexpr const char* kBlocks[] = {"options", "world", "both"};
+  return {{"name", s.name},
+          {"arguments", s.arguments.usage},
+          {"block", kBlocks[static_cast<int>(s.block)]},
+          {"doc", s.doc}};
+}
+
+void print_json() {
+  Json all{{"plugins", Json::array()}, {"statements", Json::array()}};
+  for (const PluginInfo* p : list_plugins()) all["plugins"].push_back(describe(*p));
+  for (const StatementRow& s : statements()) all["statements"].push_back(describe(s));
+  fmt::print("{}\n", all.dump(1));
+}
+
 std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }
 
 }  // namespace
@@ -83,8 +131,8 @@ int help_command(const Arguments& args) {
     print_overview();
     return kDone;
   }
-  if (args[0] == "statement") {
-    print_statements();
+  if (args[0] == "--json" || args[0] == "statement") {
+    args[0] == "--json" ? print_json() : print_statements();
     return kDone;
   }
   // A category may be two words: "float texture".

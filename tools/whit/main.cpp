@@ -20,7 +20,7 @@ const std::vector<Command>& commands() {
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"diff", diff_command, "diff OUT REFERENCE [--json]", "measure how far two pictures are apart"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
-      {"help", help_command, "help [CATEGORY [PLUGIN]]", "list plugins and their parameters"},
+      {"help", help_command, "help [CATEGORY [PLUGIN] | --json]", "list plugins and their parameters"},
   };
   return table;
 }
