@@ -31,7 +31,7 @@ class SobolSampler : public Sampler {
 /// The parameter all of them have.
 inline auto pixelsamples_param() {
   return param(&SobolSampler::pixel_samples, "pixelsamples", 16, Unit::None,
-               "Samples per pixel, at least one; rounded up to a power of two.", Range{1, 1 << 30});
+               "Samples per pixel; rounded up to a power of two.", Range{1, 1 << 30});
 }
 
 }  // namespace whit

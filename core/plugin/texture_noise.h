@@ -65,7 +65,7 @@ auto octaves_param(int Class::*member) {
 }
 template <class Class>
 auto roughness_param(float Class::*member) {
-  return param(member, "roughness", 0.5f, Unit::None, "Strength of an octave in terms of the one before.");
+  return param(member, "roughness", 0.5f, Unit::None, "Strength of each octave relative to the one before.");
 }
 
 }  // namespace whit

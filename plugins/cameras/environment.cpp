@@ -37,15 +37,16 @@ class Environment final : public ScreenCamera {
   }
 };
 
-const Register<Environment> environment{"camera",
-                                        "environment",
-                                        "Camera that sees all directions, as a lat-long picture with +y at the top.",
-                                        frameaspectratio_param(),
-                                        screenwindow_param(),
-                                        lensradius_param(),
-                                        focaldistance_param(),
-                                        shutteropen_param(),
-                                        shutterclose_param()};
+const Register<Environment> environment{
+    "camera",
+    "environment",
+    "Camera that sees all directions, as a lat-long picture with +y at the top. Has no lens or screen window.",
+    frameaspectratio_param(),
+    screenwindow_param(),
+    lensradius_param(),
+    focaldistance_param(),
+    shutteropen_param(),
+    shutterclose_param()};
 
 }  // namespace
 }  // namespace whit

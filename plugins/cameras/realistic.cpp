@@ -361,9 +361,10 @@ const Register<Realistic> realistic{
     "camera",
     "realistic",
     "Camera with the lens of a lens file; scene units are metres.",
-    param(&Realistic::lensfile, "lensfile", Unit::None,
-          "Surfaces from the front to the film: radius, thickness, index, diameter (mm)."),
-    param(&Realistic::aperturediameter, "aperturediameter", 1.0f, Unit::Millimetres, "Diameter of the stop.",
+    param(
+        &Realistic::lensfile, "lensfile", Unit::None,
+        "The lens file: a line of radius, thickness, index, diameter (mm) for each surface, front to film. Required."),
+    param(&Realistic::aperturediameter, "aperturediameter", 1.0f, Unit::Millimetres, "Diameter of the aperture stop.",
           kPositive),
     param(&Realistic::focusdistance, "focusdistance", 10.0f, Unit::Length, "Distance from the film that is sharp.",
           kPositive),

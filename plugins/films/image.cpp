@@ -54,18 +54,20 @@ const Register<ImageFilm> image{
     "film",
     "image",
     "A picture in a file.",
-    param(&ImageFilm::x_resolution, "xresolution", 1280, Unit::Pixels, "Width, at most 65536.", kResolution),
-    param(&ImageFilm::y_resolution, "yresolution", 720, Unit::Pixels, "Height, at most 65536.", kResolution),
+    param(&ImageFilm::x_resolution, "xresolution", 1280, Unit::Pixels, "Width of the picture.", kResolution),
+    param(&ImageFilm::y_resolution, "yresolution", 720, Unit::Pixels, "Height of the picture.", kResolution),
     param(&ImageFilm::crop, "cropwindow", Unit::None,
           "Part of the picture that is rendered: x0 x1 y0 y1 as fractions. By default all of it."),
     param(&ImageFilm::image_scale, "scale", 1.0f, Unit::None, "Factor of all pixels."),
     param(&ImageFilm::diagonal, "diagonal", 35.0f, Unit::Millimetres, "Diagonal of the film, for realistic cameras.",
           kPositive),
     param(&ImageFilm::max_luminance, "maxsampleluminance", std::numeric_limits<float>::infinity(), Unit::Radiance,
-          "Brighter samples are dimmed to this luminance.", kPositive),
-    param(&ImageFilm::file, "filename", "", Unit::None, "File of the picture; the extension chooses the format."),
+          "Brighter samples are dimmed to this luminance; by default none are.", kPositive),
+    param(&ImageFilm::file, "filename", "", Unit::None,
+          "File of the picture; its ending chooses the format. By default the scene's name with .exr."),
     param(&ImageFilm::display_view, "view", "", Unit::None,
-          "Display view of the 8-bit picture: sRGB, \"ACES SDR\", exposure=E, or one of the OCIO config's."),
+          "Display view of the 8-bit picture: sRGB, \"ACES SDR\", exposure=E, or one of the OCIO config's. By default "
+          "sRGB."),
     param(&ImageFilm::stops, "exposure", 0.0f, Unit::None, "Stops by which the 8-bit picture is brightened.")};
 
 }  // namespace

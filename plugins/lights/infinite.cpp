@@ -36,7 +36,8 @@ const Register<InfiniteLight> infinite{
     "Light from infinitely far away all around, constant or from a map.",
     param(&InfiniteLight::L, "L", RGB{1.0f}, Unit::Radiance, "Radiance, or factor of the map."),
     param(&InfiniteLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
-    param(&InfiniteLight::map, "mapname", Unit::None, "Lat-long map; +z of light space is at its top."),
+    param(&InfiniteLight::map, "mapname", Unit::None,
+          "Lat-long map; +z of light space is at its top. Without one, the same in all directions."),
     param(&InfiniteLight::samples, "samples", 1, Unit::None, "Accepted for pbrt's sake; has no effect."),
     param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "Accepted for pbrt's sake; has no effect.")};
 

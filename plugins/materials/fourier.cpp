@@ -48,10 +48,10 @@ struct Fourier : Material {
   }
 };
 
-const Register<Fourier> fourier{
-    "material", "fourier", "A tabulated BSDF from a file.",
-    param(&Fourier::bsdffile, "bsdffile", Unit::None, "The file: layerlab's format, \"SCATFUN\" version 1."),
-    bumpmap_param()};
+const Register<Fourier> fourier{"material", "fourier", "A tabulated BSDF from a file.",
+                                param(&Fourier::bsdffile, "bsdffile", Unit::None,
+                                      "The file, in layerlab's format: \"SCATFUN\", version 1. Required."),
+                                bumpmap_param()};
 
 }  // namespace
 }  // namespace whit

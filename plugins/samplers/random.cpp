@@ -34,9 +34,9 @@ class Random final : public Sampler {
   }
 };
 
-const Register<Random> random_sampler{"sampler", "random", "Independent random numbers.",
-                                      param(&Random::pixel_samples, "pixelsamples", 4, Unit::None,
-                                            "Samples per pixel, at least one.", Range{1, kMaxSamples})};
+const Register<Random> random_sampler{
+    "sampler", "random", "Independent random numbers.",
+    param(&Random::pixel_samples, "pixelsamples", 4, Unit::None, "Samples per pixel.", Range{1, kMaxSamples})};
 
 }  // namespace
 }  // namespace whit

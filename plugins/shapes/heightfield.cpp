@@ -52,9 +52,9 @@ const Register<Heightfield> heightfield{
     "shape",
     "heightfield",
     "A grid of heights over the unit square.",
-    param(&Heightfield::nu, "nu", 0, Unit::None, "Number of points along x.", kNonNegative),
-    param(&Heightfield::nv, "nv", 0, Unit::None, "Number of points along y.", kNonNegative),
-    param(&Heightfield::Pz, "Pz", Unit::Length, "The heights, row by row in x.", kCoordinates)};
+    param(&Heightfield::nu, "nu", Unit::None, "Number of points along x, at least 2. Required.", kNonNegative),
+    param(&Heightfield::nv, "nv", Unit::None, "Number of points along y, at least 2. Required.", kNonNegative),
+    param(&Heightfield::Pz, "Pz", Unit::Length, "The heights, nu times nv, row by row in x. Required.", kCoordinates)};
 
 }  // namespace
 }  // namespace whit

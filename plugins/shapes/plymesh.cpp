@@ -91,7 +91,7 @@ const Register<PlyMeshShape> plymesh{
     "shape",
     "plymesh",
     "A triangle mesh in a PLY file.",
-    param(&PlyMeshShape::filename, "filename", Unit::None, "The PLY file, ascii or binary."),
+    param(&PlyMeshShape::filename, "filename", Unit::None, "The PLY file, ascii or binary. Required."),
     alpha_param(),
     shadowalpha_param()};
 

@@ -94,7 +94,8 @@ class RegisterCheckerboard : public Register2D<Checkerboard<T>, T> {
  public:
   explicit RegisterCheckerboard(const char* category)
       : Register2D<C, T>(category, "checkerboard", kDoc,
-                         param(&C::dimension, "dimension", 2, Unit::None, "2: squares; 3: cubes.", Range{2, 3}),
+                         param(&C::dimension, "dimension", 2, Unit::None,
+                               "2: squares in texture coordinates; 3: cubes in space.", Range{2, 3}),
                          param(&C::tex1, "tex1", T(1.0f), Unit::None, "Value in even cells."),
                          param(&C::tex2, "tex2", T(0.0f), Unit::None, "Value in odd cells."),
                          choice(&C::aamode, "aamode", {"closedform", "none"},

@@ -59,13 +59,19 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
  public:
   explicit RegisterImageMap(const char* category)
       : Register2D<I, T>(
-            category, "imagemap", kDoc, param(&I::filename, "filename", Unit::None, "The picture's file."),
-            choice(&I::wrap, "wrap", {"repeat", "black", "clamp"}, "What lies outside the unit square."),
-            param(&I::gamma, "gamma", Unit::None, "Decode sRGB; when not given, for png and tga files only."),
+            category, "imagemap", kDoc,
+            param(&I::filename, "filename", Unit::None,
+                  "The picture's file, in any format that OpenImageIO reads. Required."),
+            choice(&I::wrap, "wrap", {"repeat", "black", "clamp"},
+                   "What lies outside the unit square: the picture again, black, or its border."),
+            param(&I::gamma, "gamma", Unit::None,
+                  "Decodes sRGB. By default true for png and tga files, false for others."),
             param(&I::scale, "scale", 1.0f, Unit::None, "Multiplies every value, after decoding."),
-            param(&I::trilinear, "trilinear", false, Unit::None, "Square footprints instead of elliptic ones."),
+            param(&I::trilinear, "trilinear", false, Unit::None,
+                  "Filters square footprints instead of elliptic ones: faster, but blurred at grazing angles."),
             param(&I::maxanisotropy, "maxanisotropy", 8.0f, Unit::None,
-                  "Longest to shortest axis of an elliptic footprint.", kPositive)) {}
+                  "The most by which an elliptic footprint may be longer than wide; more is sharper and slower.",
+                  kPositive)) {}
 };
 
 const RegisterImageMap<float> imagemap_float{"float texture"};
