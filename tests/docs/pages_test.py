@@ -9,7 +9,8 @@ import tempfile
 import unittest
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-PAGES = [ROOT + "/README.md", ROOT + "/CONTRIBUTING.md"] + sorted(glob.glob(ROOT + "/docs/*.md"))
+PAGES = [ROOT + "/README.md", ROOT + "/CONTRIBUTING.md"] + sorted(
+    glob.glob(ROOT + "/docs/**/*.md", recursive=True))
 WHIT = os.environ.get("WHIT", ROOT + "/build/release/whit")
 
 
