@@ -29,6 +29,7 @@ struct Corners {
 struct TriangleLanes {
   Corners p, n, s;
   float *u0, *v0, *u1, *v1, *u2, *v2;
+  float* unit;  ///< The length of a world unit.
   bool any_normals = false, any_tangents = false;
 };
 
@@ -36,9 +37,11 @@ TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int fir
   TriangleLanes t;
   t.p = Corners(arena, count);
   t.u0 = arena.floats(count), t.v0 = arena.floats(count), t.u1 = arena.floats(count);
-  t.v1 = arena.floats(count), t.u2 = arena.floats(count), t.v2 = arena.floats(count);
+  t.v1 = arena.floats(count), t.u2 = arena.floats(count), t.v2 = arena.floats(count), t.unit = arena.floats(count);
   for (int i = 0; i < count; ++i) {
-    const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
+    const SceneShape& shape = scene.shapes[static_cast<size_t>(h.shape[first + i])];
+    const Mesh& mesh = *shape.mesh;
+    t.unit[i] = shape.unit;
     const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(h.prim[first + i])];
     t.p.a.set(i, mesh.position(index[0]));
     t.p.b.set(i, mesh.position(index[1]));
@@ -85,14 +88,16 @@ void triangle_geometry(const TriangleLanes& t, const ShadingBatch& s, const Geom
     const float du02 = t.u0[i] - t.u2[i], du12 = t.u1[i] - t.u2[i];
     const float dv02 = t.v0[i] - t.v2[i], dv12 = t.v1[i] - t.v2[i];
     const Vec3f n = normalize_any(cross(e02, e12));
-    // Where the texture coordinates span no area, any tangent frame serves.
+    // Where the texture coordinates span no area, any tangent frame serves. Its vectors, like interpolated ones, have
+    // the length 1 in world space: bump maps measure against them.
     const float det = du02 * dv12 - dv02 * du12;
     const float inverse = det != 0 ? 1 / det : 0.0f;
     Vec3f dpdu = (e02 * dv12 - e12 * dv02) * inverse, dpdv = (e12 * du02 - e02 * du12) * inverse;
     const Vec3f area = cross(dpdu, dpdv);
     const Frame frame = coordinate_system(n);
     const bool usable = dot(area, area) > 0;
-    const auto pick = [&](float a, float b) { return usable ? a : b; };
+    const float unit = t.unit[i];
+    const auto pick = [&](float a, float b) { return usable ? a : b * unit; };
     dpdu = {pick(dpdu.x, frame.s.x), pick(dpdu.y, frame.s.y), pick(dpdu.z, frame.s.z)};
     dpdv = {pick(dpdv.x, frame.t.x), pick(dpdv.y, frame.t.y), pick(dpdv.z, frame.t.z)};
     g.dpdu.set(i, dpdu), g.dpdv.set(i, dpdv);
@@ -126,8 +131,8 @@ void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float
     ss = pick(framed, cross(ts, ns), frame.s);
     const bool shaded = has_n | has_t;
     const Vec3f turned = ns * flip, ng = s.ng[i];
-    s.dpdu.set(i, pick(shaded, ss, s.dpdu[i]));
-    s.dpdv.set(i, pick(shaded, ts, s.dpdv[i]));
+    s.dpdu.set(i, pick(shaded, ss * t.unit[i], s.dpdu[i]));
+    s.dpdv.set(i, pick(shaded, ts * t.unit[i], s.dpdv[i]));
     s.ns.set(i, pick(shaded, turned, s.ns[i]));
     s.ng.set(i, pick(shaded & (dot(ng, turned) < 0), -ng, ng));
   });

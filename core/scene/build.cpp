@@ -251,6 +251,7 @@ class Builder {
       analytic.place(to_group, d.reverse_orientation != mirrored_later);
       shape.analytic = &analytic;
     }
+    shape.unit = static_cast<float>(group.space.scale);
     shape.sort_key = sort_key(shape, index);
     shape.emission = group.moving_shape ? -1 : emission_of(d, shape);
     if (shape.curves && shape.emission >= 0) {

@@ -51,6 +51,7 @@ struct SceneShape {
   int material = 0;             ///< Index into Scene::materials.
   int sort_key = 0;             ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
   int emission = -1;            ///< Index into Scene::emissions.
+  float unit = 1;               ///< The length of a world unit in the shape's group.
   bool flips = false;           ///< ReverseOrientation XOR handedness: normals flip.
   bool passes_through = false;  ///< Its material is an interface: rays go on.
 };
@@ -63,7 +64,7 @@ struct Emission {
 /// A placed object: its group's space to render space at evenly spaced times.
 struct SceneInstance {
   std::vector<Mat4d> keys;
-  Mat4d normal_matrix;  ///< Inverse transpose of the only key (row-vector form); unused when moving.
+  Mat4d normal_matrix;  ///< Inverse transpose of the only key (row-vector form), to scale; unused when moving.
   bool moving() const { return keys.size() > 1; }
 };
 

@@ -98,6 +98,23 @@ TEST(Surface, SphereDerivatives) {
   expect_near(Vec3d(hit.s.ng[0]), p / r, 1e-6, "ng");
 }
 
+TEST(Surface, TangentsOfInterpolatedNormalsAreOneWorldUnitLong) {
+  // As in pbrt-v3, which bump maps are measured against. Whatever else is in the scene chooses the scale of render space;
+  // an instance stretches its tangents.
+  const std::string mesh =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0  2 0 0  0 3 0] \"normal N\" [0 0 1  0 0 1 "
+      " "
+      "0 0 1] \"float uv\" [0 0  1 0  0 1] ";
+  const std::string far = " AttributeBegin Translate 0 0 -5000 Shape \"sphere\" AttributeEnd";
+  const std::string object = "ObjectBegin \"o\" " + mesh + " ObjectEnd Scale 3 3 3 ObjectInstance \"o\"";
+  for (const auto& [text, length] : {std::pair(mesh, 1.0), std::pair(mesh + far, 1.0), std::pair(object, 3.0)}) {
+    const test::BuiltScene built(scene(text));
+    const Hit hit(*built.scene, {0.5, 0.75, 9}, {0.5, 0.75, 0});
+    EXPECT_NEAR(hit.dpdu().length(), length, 1e-6) << text;
+    EXPECT_NEAR(hit.dpdv().length(), length, 1e-6) << text;
+  }
+}
+
 TEST(Surface, InstancesCarryPointsAndNormals) {
   // The plane x + y = 1 of the object, normal (1,1,0); under Scale 2 1 1 its normal is (1,2,0) (inverse transpose), and the
   // point (0.5, 0.5, 0) comes to (1, 0.5, 0), moved by (3, 0, 0).
@@ -181,6 +198,32 @@ TEST(Surface, AFarAwaySceneGivesTheSamePicture) {
     error += d * d / (static_cast<double>(near[i]) * near[i] + 0.01 * mean * mean);
   }
   EXPECT_LE(error / static_cast<double>(near.size()), 1e-6);
+}
+
+TEST(Surface, AnObjectFarAwayChangesNothing) {
+  // It changes the scale of render space, by a power of two: a bump map on a mesh with normals stays.
+  const std::string text = R"(
+Film "image" "integer xresolution" 32 "integer yresolution" 32
+Sampler "halton" "integer pixelsamples" 4
+LookAt 0 0 5  0 0 0  0 1 0
+Camera "perspective" "float fov" 50
+WorldBegin
+  LightSource "point" "point from" [2 4 5] "rgb I" [30 30 30]
+  Texture "waves" "float" "wrinkled"
+  Texture "bumps" "float" "scale" "texture tex1" "waves" "float tex2" 0.2
+  Material "matte" "texture bumpmap" "bumps"
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-3 -3 0  3 -3 0  3 3 0  -3 3 0]
+    "normal N" [0 0 1  0 0 1  0 0 1  0 0 1] "float uv" [0 0  1 0  1 1  0 1]
+)";
+  const auto picture = [&](const std::string& more) {
+    const test::BuiltScene built(text + more + "WorldEnd\n");
+    return render(*built.scene, {}).picture.rgb;
+  };
+  const auto alone = picture(""), with_another = picture("Translate 0 0 9000 Shape \"sphere\"\n");
+  ASSERT_EQ(alone.size(), with_another.size());
+  float worst = 0;
+  for (size_t i = 0; i < alone.size(); ++i) worst = std::max(worst, std::abs(with_another[i] / alone[i] - 1));
+  EXPECT_LT(worst, 1e-4f);
 }
 
 }  // namespace
