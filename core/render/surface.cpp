@@ -138,20 +138,24 @@ void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float
   });
 }
 
-/// Derivatives of the interpolated normal with respect to (u, v).
-void triangle_normal_derivatives(const TriangleLanes& t, const ShadingBatch& s) {
+/// Derivatives of the interpolated normal, made a unit vector, with respect to (u, v).
+void triangle_normal_derivatives(const TriangleLanes& t, const ShadingBatch& s, const float* bary_u,
+                                 const float* bary_v) {
   if (!t.any_normals) {
     for_lanes(s.n, [&](int i) { s.dndu.set(i, {0, 0, 0}), s.dndv.set(i, {0, 0, 0}); });
     return;
   }
   for_lanes(s.n, [&](int i) {
+    const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
     const float du02 = t.u0[i] - t.u2[i], du12 = t.u1[i] - t.u2[i];
     const float dv02 = t.v0[i] - t.v2[i], dv12 = t.v1[i] - t.v2[i];
-    const float det = du02 * dv12 - dv02 * du12;
-    const float inverse = det != 0 ? 1 / det : 0.0f;
+    const Vec3f sum = t.n.a[i] * b0 + t.n.b[i] * b1 + t.n.c[i] * b2, n = normalize_any(sum);
+    const float scale = (du02 * dv12 - dv02 * du12) * dot(sum, n);
+    const float inverse = scale != 0 ? (s.flips[i] ? -1.0f : 1.0f) / scale : 0.0f;
     const Vec3f n02 = t.n.a[i] - t.n.c[i], n12 = t.n.b[i] - t.n.c[i];
-    s.dndu.set(i, (n02 * dv12 - n12 * dv02) * inverse);
-    s.dndv.set(i, (n12 * du02 - n02 * du12) * inverse);
+    const Vec3f du = (n02 * dv12 - n12 * dv02) * inverse, dv = (n12 * du02 - n02 * du12) * inverse;
+    s.dndu.set(i, du - n * dot(n, du));
+    s.dndv.set(i, dv - n * dot(n, dv));
   });
 }
 
@@ -164,11 +168,18 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
   if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
   if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
   if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
-  if (s.dndu) triangle_normal_derivatives(t, s);
+  if (s.dndu) triangle_normal_derivatives(t, s, bu, bv);
 }
 
 Vec3f to_float(const Vec3d& v) {
   return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
+}
+
+/// The change of a unit normal n by `dn`, as a transform's normal matrix carries it along: the change of the unit normal
+/// there, whatever the matrix's scale.
+Vec3d transform_normal_change(const Mat4d& normal_matrix, const Vec3d& n, const Vec3d& dn) {
+  const Vec3d m = transform_vector(normal_matrix, n), d = transform_vector(normal_matrix, dn);
+  return (d - m * (m.dot(d) / m.length2())) / m.length();
 }
 
 /// The group's local space of a hit: render space itself for world geometry.
@@ -203,15 +214,11 @@ void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, cons
     const Vec3d n = dpdu.cross(dpdv).normalized() * (flip ? -1.0 : 1.0);
     s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
     if (s.dndu) {
-      // Derivatives of a direction: transformed like the normal, which they change to first order.
-      const Mat4d& to_object = shape.scene_to_object();
-      const auto normal_vector = [&](const Vec3d& v) {
-        return Vec3d(v.dot({to_object[0][0], to_object[0][1], to_object[0][2]}),
-                     v.dot({to_object[1][0], to_object[1][1], to_object[1][2]}),
-                     v.dot({to_object[2][0], to_object[2][1], to_object[2][2]}));
-      };
-      s.dndu.set(i, to_float(normal_vector(point.dndu)));
-      s.dndv.set(i, to_float(normal_vector(point.dndv)));
+      const Mat4d normals = shape.scene_to_object().transposed();
+      const Vec3d own = point.dpdu.cross(point.dpdv).normalized();
+      const double side = s.flips[i] ? -1 : 1;
+      s.dndu.set(i, to_float(transform_normal_change(normals, own, point.dndu) * side));
+      s.dndv.set(i, to_float(transform_normal_change(normals, own, point.dndv) * side));
     }
   }
 }
@@ -303,12 +310,13 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
     for (const Vec3Lanes* v : {&s.dpdu, &s.dpdv, &g.dpdu, &g.dpdv})
       v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
     // The normal keeps the side it has on the object (pbrt does not flip for the instance's own handedness).
+    const Vec3d local_ns(s.ns[i]), ns = transform_vector(nm, local_ns).normalized();
     const Vec3d ng = transform_vector(nm, Vec3d(s.ng[i])).normalized();
-    const Vec3d ns = transform_vector(nm, Vec3d(s.ns[i])).normalized();
     s.ng.set(i, to_float(ng));
     s.ns.set(i, to_float(ns.dot(ng) < 0 ? -ns : ns));
     if (s.dndu) {
-      for (const Vec3Lanes* v : {&s.dndu, &s.dndv}) v->set(i, to_float(transform_vector(nm, Vec3d((*v)[i]))));
+      for (const Vec3Lanes* v : {&s.dndu, &s.dndv})
+        v->set(i, to_float(transform_normal_change(nm, local_ns, Vec3d((*v)[i]))));
     }
   }
 }

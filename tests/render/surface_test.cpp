@@ -29,6 +29,7 @@ struct Hit {
     h.shape = arena.alloc<int32_t>(1), h.instance = arena.alloc<int32_t>(1), h.prim = arena.alloc<uint32_t>(1);
     h.o.set(0, Vec3f(transform_point(m, from)));
     h.d.set(0, Vec3f((to - from).normalized()));
+    h.rx_o = h.ry_o = h.o, h.rx_d = h.ry_d = h.d;
     scene.accel->intersect({1, h.o, h.d, nullptr, nullptr}, {h.t, h.shape, h.prim, h.instance, h.u, h.v}, false);
     if (h.shape[0] < 0) throw std::runtime_error("a miss");
     s = compute_surfaces(scene, h, arena);
@@ -112,6 +113,51 @@ TEST(Surface, TangentsOfInterpolatedNormalsAreOneWorldUnitLong) {
     const Hit hit(*built.scene, {0.5, 0.75, 9}, {0.5, 0.75, 0});
     EXPECT_NEAR(hit.dpdu().length(), length, 1e-6) << text;
     EXPECT_NEAR(hit.dpdv().length(), length, 1e-6) << text;
+  }
+}
+
+TEST(Surface, NormalsTurnAsTheSurfaceBends) {
+  // The unit normal of a sphere of radius r is p / r, so its derivatives are those of p over r: however the sphere is
+  // placed, and -p / r where it is turned inside out. On the squeezed one, p = S q with S = diag(1, 1, 1/2) and q on the unit
+  // sphere, n = S^-1 q / |S^-1 q|; at q = (1, 0, 0) dn = (S^-1 dq) across n, with dq = S^-1 dp: (0, dy, 4 dz).
+  const std::string ball = "Shape \"sphere\" ", object = "ObjectBegin \"o\" Scale .1 .1 .1 " + ball + "ObjectEnd ";
+  struct Case {
+    std::string text;
+    double r;
+  };
+  for (const Case& c : {Case{ball, 1},
+                        {"Scale 4 4 4 " + ball, 4},
+                        {"Rotate 50 1 2 3 Scale 0.2 0.2 0.2 " + ball, 0.2},
+                        {ball + "AttributeBegin Translate 0 0 -9000 " + ball + "AttributeEnd", 1},
+                        {object + "Rotate 70 3 2 1 Scale 7 7 7 ObjectInstance \"o\"", 0.7},
+                        {"ReverseOrientation " + ball, -1},
+                        {"Scale -2 2 2 " + ball, -2}}) {
+    const test::BuiltScene built(scene(c.text));
+    const Hit hit(*built.scene, Vec3d(2, 3, 4) * std::abs(c.r), {0, 0, 0});
+    expect_near(Vec3d(hit.s.dndu[0]), hit.dpdu() / c.r, 1e-5, c.text.c_str());
+    expect_near(Vec3d(hit.s.dndv[0]), hit.dpdv() / c.r, 1e-5, c.text.c_str());
+  }
+  const test::BuiltScene built(scene("Scale 1 1 0.5 Shape \"sphere\""));
+  const Hit hit(*built.scene, {3, 0, 0}, {0, 0, 0});
+  expect_near(Vec3d(hit.s.dndu[0]), {0, hit.dpdu().y, 4 * hit.dpdu().z}, 1e-5, "squeezed");
+  expect_near(Vec3d(hit.s.dndv[0]), {0, hit.dpdv().y, 4 * hit.dpdv().z}, 1e-5, "squeezed");
+}
+
+TEST(Surface, InterpolatedNormalsTurnLikeUnitVectors) {
+  // Normals (-1, 0, 1) and (1, 0, 1) at x = -1 and 1 add up to (x, 0, 1): the angle atan x to the z axis turns by
+  // 1 / (1 + x^2), along (1, 0, -x) / sqrt(1 + x^2). With u = (x + 1) / 2 dn/du is twice that. Lengths do not matter, nor
+  // does scale; placed twice as large, x is half of the world's.
+  const std::string mesh =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0] "
+      "\"float uv\" [0 0  1 0  1 1  0 1] \"normal N\" [-3 0 3  3 0 3  3 0 3  -3 0 3] ";
+  const std::string object = "ObjectBegin \"o\" Translate 0 0 0 " + mesh + "ObjectEnd ";
+  for (const std::string& text : {mesh, "Scale 2 2 2 " + mesh, object + "Scale 2 2 2 ObjectInstance \"o\"",
+                                  mesh + "Translate 0 0 -9000 Shape \"sphere\""}) {
+    const double x = text.find("Scale") == std::string::npos ? 0.5 : 0.25, turn = 2 / (1 + x * x);
+    const test::BuiltScene built(scene(text));
+    const Hit hit(*built.scene, {0.5, 0.2, 9}, {0.5, 0.2, 0});
+    expect_near(Vec3d(hit.s.dndu[0]), Vec3d(1, 0, -x) * (turn / std::sqrt(1 + x * x)), 1e-5, text.c_str());
+    expect_near(Vec3d(hit.s.dndv[0]), {0, 0, 0}, 1e-5, text.c_str());
   }
 }
 
@@ -201,7 +247,8 @@ TEST(Surface, AFarAwaySceneGivesTheSamePicture) {
 }
 
 TEST(Surface, AnObjectFarAwayChangesNothing) {
-  // It changes the scale of render space, by a power of two: a bump map on a mesh with normals stays.
+  // It changes the scale of render space, by a power of two. What depends on lengths stays: a bump map on a mesh with
+  // normals, and how wide a checkerboard is filtered that is seen in a ball.
   const std::string text = R"(
 Film "image" "integer xresolution" 32 "integer yresolution" 32
 Sampler "halton" "integer pixelsamples" 4
@@ -214,6 +261,14 @@ WorldBegin
   Material "matte" "texture bumpmap" "bumps"
   Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-3 -3 0  3 -3 0  3 3 0  -3 3 0]
     "normal N" [0 0 1  0 0 1  0 0 1  0 0 1] "float uv" [0 0  1 0  1 1  0 1]
+  AttributeBegin
+    Texture "checks" "spectrum" "checkerboard" "float uscale" 40 "float vscale" 40
+    Material "matte" "texture Kd" "checks"
+    Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-9 -9 6  9 -9 6  9 9 6  -9 9 6] "float uv" [0 0 1 0 1 1 0 1]
+    Material "mirror"
+    Translate 0 0 1
+    Shape "sphere"
+  AttributeEnd
 )";
   const auto picture = [&](const std::string& more) {
     const test::BuiltScene built(text + more + "WorldEnd\n");
