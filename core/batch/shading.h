@@ -16,7 +16,7 @@ struct ShadingBatch {
   Vec3Lanes p;                       ///< Point on the surface.
   Vec3Lanes p_error;                 ///< Bound on the absolute error of p, per component, >= 0.
   Vec3Lanes wo;                      ///< Unit direction towards where the ray came from.
-  Vec3Lanes ng;                      ///< Geometric normal, oriented by pbrt's rule (ReverseOrientation XOR handedness).
+  Vec3Lanes ng;                      ///< Geometric normal, oriented by pbrt's rule, see SceneShape::flips.
   Vec3Lanes ns;                      ///< Shading normal, in the hemisphere of ng.
   Vec3Lanes dpdu, dpdv;              ///< Shading partial derivatives of p (pbrt's shading.dpdu, shading.dpdv).
   Vec3Lanes dndu, dndv;              ///< Shading normal derivatives; null unless differentials or bumps are live.
@@ -24,7 +24,7 @@ struct ShadingBatch {
   /// Screen-space derivatives of (u, v) and p, over one sample's footprint; null when no effect needs them.
   float *dudx = nullptr, *dvdx = nullptr, *dudy = nullptr, *dvdy = nullptr;
   Vec3Lanes dpdx, dpdy;
-  uint8_t* flips = nullptr;  ///< 1 where ReverseOrientation XOR the transform's handedness flips normals.
+  uint8_t* flips = nullptr;  ///< SceneShape::flips, 1 where normals flip.
 
   bool has_footprint() const { return dudx != nullptr; }
 

@@ -189,6 +189,12 @@ Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   return interpolate_keys(instance.keys, h.time ? h.time[i] : 0).inverse();
 }
 
+/// The unit normal of derivatives that m has transformed. pbrt flips the object's normal and then transforms it, so the
+/// cross product's own change of sign under a mirroring goes.
+Vec3d oriented_normal(const Vec3d& dpdu, const Vec3d& dpdv, const Mat4d& m, bool flips) {
+  return dpdu.cross(dpdv).normalized() * (flips != swaps_handedness(m) ? -1.0 : 1.0);
+}
+
 void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
                        const GeometricPartials& g) {
   for (int i = 0; i < s.n; ++i) {
@@ -209,9 +215,7 @@ void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, cons
     const Vec3d dpdu = transform_vector(m, point.dpdu), dpdv = transform_vector(m, point.dpdv);
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
     s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
-    // pbrt flips the object's normal and then transforms it: the cross product's own change of sign goes.
-    const bool flip = (s.flips[i] != 0) != swaps_handedness(m);
-    const Vec3d n = dpdu.cross(dpdv).normalized() * (flip ? -1.0 : 1.0);
+    const Vec3d n = oriented_normal(dpdu, dpdv, m, s.flips[i] != 0);
     s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
     if (s.dndu) {
       const Mat4d normals = shape.scene_to_object().transposed();
@@ -283,7 +287,7 @@ void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const S
     s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
     s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
-    const Vec3d n = dpdu.cross(dpdv).normalized() * (s.flips[i] ? -1.0 : 1.0);
+    const Vec3d n = oriented_normal(dpdu, dpdv, m, s.flips[i] != 0);
     s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
     if (s.dndu) s.dndu.set(i, {0, 0, 0}), s.dndv.set(i, {0, 0, 0});
   }

@@ -227,9 +227,8 @@ class Builder {
     SceneShape shape;
     shape.material = scene_->bound.shape_material[loaded.description];
     shape.passes_through = scene_->materials[static_cast<size_t>(shape.material)]->is_interface();
-    // A moving shape's handedness is that of its transform, which the instance applies.
-    shape.flips =
-        d.reverse_orientation != swaps_handedness(group.moving_shape ? transform(d.transform).start : to_world);
+    // Given normals are mirrored with the rest, and stay on their side; so does all of a moving shape, as in pbrt-v3.
+    shape.flips = d.reverse_orientation != (loaded.mesh.normals.empty() && swaps_handedness(to_world));
     const int index = static_cast<int>(scene_->shapes.size());
     if (dynamic_cast<MeshShape*>(&plugin)) {
       size_t degenerate = 0;
@@ -246,9 +245,7 @@ class Builder {
       shape.curves = scene_->curves.back().get();
     } else {
       auto& analytic = dynamic_cast<AnalyticShape&>(plugin);
-      // place() derives flips from the matrix it is given, which for a moving shape holds no handedness yet.
-      const bool mirrored_later = group.moving_shape && swaps_handedness(transform(d.transform).start);
-      analytic.place(to_group, d.reverse_orientation != mirrored_later);
+      analytic.place(to_group, d.reverse_orientation);
       shape.analytic = &analytic;
     }
     shape.unit = static_cast<float>(group.space.scale);

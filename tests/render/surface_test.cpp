@@ -83,6 +83,47 @@ TEST(Surface, TheNormalIsThatOfTheCornersOrderAndFlips) {
   }
 }
 
+TEST(Surface, GivenNormalsAreMirroredAndFlipByReverseOrientationAlone) {
+  // pbrt-v3 transforms them with the points and takes no notice of handedness; the geometric normal follows to their side,
+  // whatever the corners' order.
+  for (const char* order : {"0 1 2", "2 1 0"}) {
+    const std::string mesh = "Shape \"trianglemesh\" \"integer indices\" [" + std::string(order) +
+                             "] \"point P\" [-1 -1 0  1 -1 0  0 1 0] \"normal N\" [0 0 1  0 0 1  0 0 1]";
+    const std::pair<const char*, double> cases[] = {{"", 1},
+                                                    {"ReverseOrientation ", -1},
+                                                    {"Scale -1 1 1 ", 1},
+                                                    {"Scale 1 1 -1 ", -1},
+                                                    {"Scale -1 1 1 ReverseOrientation ", -1}};
+    for (const auto& [placement, z] : cases) {
+      const test::BuiltScene built(scene(placement + mesh));
+      const Hit hit(*built.scene, {0, 0, 9}, {0, 0, 0});
+      expect_near(Vec3d(hit.s.ng[0]), {0, 0, z}, 1e-6, placement);
+      expect_near(Vec3d(hit.s.ns[0]), {0, 0, z}, 1e-6, placement);
+    }
+  }
+}
+
+TEST(Surface, AnalyticNormalsFlipBeforeTheyAreTransformed) {
+  // pbrt-v3: a sphere's points outwards, a curve's along the ray (dpdu x dpdv, dpdv being across both). Mirrored ones
+  // point the other way, and moving ones, which it makes without their transform, flip by ReverseOrientation alone.
+  const std::string moving = "ActiveTransform EndTime Translate 0 0 1e-3 ActiveTransform All ";
+  const std::string curve = "Shape \"curve\" \"float width\" 2 \"point P\" [-2 0 0  -1 0 0  1 0 0  2 0 0]";
+  for (const auto& [shape, front] : {std::pair<std::string, double>("Shape \"sphere\"", 1), {curve, -1}}) {
+    const std::pair<std::string, double> cases[] = {{"", 1},
+                                                    {"ReverseOrientation ", -1},
+                                                    {"Scale -1 1 1 ", -1},
+                                                    {"Scale 1 1 -1 ReverseOrientation ", 1},
+                                                    {moving, 1},
+                                                    {"Scale -1 1 1 " + moving, 1},
+                                                    {"ReverseOrientation Scale -1 1 1 " + moving, -1}};
+    for (const auto& [placement, z] : cases) {
+      const test::BuiltScene built(scene(placement + shape));
+      const Hit hit(*built.scene, {0, 0, 9}, {0, 0, 0});
+      expect_near(Vec3d(hit.s.ng[0]), {0, 0, z * front}, 1e-5, (placement + shape).c_str());
+    }
+  }
+}
+
 TEST(Surface, SphereDerivatives) {
   // pbrt's sphere: p = r (sin t cos f, sin t sin f, cos t), f = 2 pi u, t = pi - pi v (v from bottom to top). So
   // dp/du = 2 pi (-y, x, 0) and dp/dv = pi (z cos f, z sin f, -r sin t) * -1 * -1: with dt/dv = -pi,
