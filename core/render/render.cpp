@@ -11,7 +11,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <mutex>
 
 #include "core/render/trace.h"
@@ -133,12 +132,13 @@ class FilmRender {
     const float brightest = static_cast<float>(scene_.film().max_sample_luminance());
     for (int i = 0; i < n; ++i) {
       RGB l = c.radiance[i];
-      const float smallest = std::min({l.x, l.y, l.z}), sum = l.x + l.y + l.z;
-      if (!(smallest >= 0 && sum <= std::numeric_limits<float>::max())) {
+      if (!std::isfinite(l.x + l.y + l.z)) {
         worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
         continue;
       }
+      // Colours outside the gamut have negative components, and pbrt-v3 keeps them; nothing is darker than black.
       const float y = luminance(l);
+      if (y < 0) l = RGB(0.0f);
       if (y > brightest) l *= brightest / y;
       sums.add(c.film_x[i], c.film_y[i], l * c.ray_weight[i]);
     }

@@ -280,10 +280,10 @@ class RenderJob {
   }
 
   static void report_invalid(const RenderStatistics& s) {
-    say(fmt::format(
-        "whit: warning: {} samples were not finite or negative and were left out; the first is sample {} of "
-        "pixel {},{}",
-        s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y));
+    say(
+        fmt::format("whit: warning: {} samples were not finite and were left out; the first is sample {} of "
+                    "pixel {},{}",
+                    s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y));
   }
 
   void summarise(const Scene& scene, const RenderResult& r, const OutputPlan& output,
