@@ -207,25 +207,22 @@ class Binder {
     override_material(shape, *info, material, *material_info);
   }
 
-  /// Parameters of a shape that its material knows (and the shape does not) make a material of its own.
-  /// pbrt looks for textures first: the shape's, then the material's; then for values in the same order.
+  /// Parameters of a shape that its material knows (and the shape does not) make a material of its own. As in pbrt
+  /// they go before the material's, be these values or textures.
   void override_material(const ShapeDescription& shape, const PluginInfo& shape_info,
                          const MaterialDescription& material, const PluginInfo& material_info) {
     const auto overrides = [&](const Parameter& p) {
-      return material_info.find_param(p.name) && !shape_info.find_param(p.name);
+      const ParamSpec* spec = material_info.find_param(p.name);
+      return spec && std::count(spec->accepts.begin(), spec->accepts.end(), p.type) > 0 &&
+             !shape_info.find_param(p.name);
     };
     if (std::none_of(shape.params.begin(), shape.params.end(), overrides)) return;
     ParameterList& merged = scene_.own_params.emplace_back();
     std::copy_if(shape.params.begin(), shape.params.end(), std::back_inserter(merged), overrides);
-    for (const Parameter& p : material.params) {
-      const auto same =
-          std::find_if(merged.begin(), merged.end(), [&](const Parameter& o) { return o.name == p.name; });
-      if (same == merged.end()) {
-        merged.push_back(p);
-      } else if (p.type == ParamType::Texture && same->type != ParamType::Texture) {
-        *same = p;
-      }
-    }
+    std::copy_if(material.params.begin(), material.params.end(), std::back_inserter(merged), [&](const Parameter& p) {
+      return std::none_of(shape.params.begin(), shape.params.end(),
+                          [&](const Parameter& o) { return o.name == p.name && overrides(o); });
+    });
     // The material's own problems have been reported at its statement; only the shape's are news.
     Diagnostics all;
     std::swap(all, diagnostics_);

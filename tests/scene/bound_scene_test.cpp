@@ -1,0 +1,58 @@
+// From statements to plugins: which of several values a material takes.
+#include "core/scene/bound_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/plugin/shading_points.h"
+#include "tests/scene/scene_text.h"
+
+namespace whit {
+namespace {
+
+/// A parsed and bound scene that may have been warned about.
+struct Loose {
+  Sources sources;
+  ParseResult parsed;
+  Diagnostics said;
+  BoundScene bound;
+
+  explicit Loose(const std::string& world)
+      : parsed(parse_text(sources, "test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n", "")) {
+    bound = bind_scene(
+        parsed.scenes[0], [this](const Parameter& p, size_t i) { return value_position(sources, p, i); }, said);
+  }
+  Loose(const Loose&) = delete;
+  Loose& operator=(const Loose&) = delete;
+
+  /// The weight of the only lobe of the last shape's material: Kd if it is matte.
+  RGB weight() const {
+    test::ShadingPoints points(1);
+    LobeSet lobes(points.arena);
+    bound.materials[static_cast<size_t>(bound.shape_material.back())].plugin->lobes(points.s, lobes);
+    EXPECT_EQ(lobes.count, 1);
+    return lobes.lobes[0].weight[0];
+  }
+};
+
+const std::string kRed = "\"rgb Kd\" [0.5 0 0] ", kGreen = "\"rgb Kd\" [0 0.5 0] ",
+                  kTexture = "\"texture Kd\" \"blue\" ";
+const RGB kIsRed(0.5f, 0, 0), kIsGreen(0, 0.5f, 0), kIsBlue(0, 0, 0.5f);
+const std::string kBlue = "Texture \"blue\" \"spectrum\" \"constant\" \"rgb value\" [0 0 0.5]\n";
+
+TEST(BoundScene, AShapesParametersGoBeforeItsMaterials) {
+  // pbrt-v3 asks the shape first, for a texture and then for a value, and then the material in the same way.
+  const auto weight = [](const std::string& material, const std::string& shape) {
+    return Loose(kBlue + "Material \"matte\" " + material + "\nShape \"sphere\" " + shape).weight();
+  };
+  EXPECT_EQ(weight(kRed, ""), kIsRed);
+  EXPECT_EQ(weight(kRed, kGreen), kIsGreen);
+  EXPECT_EQ(weight(kRed, kTexture), kIsBlue);
+  EXPECT_EQ(weight(kTexture, kGreen), kIsGreen);
+  EXPECT_EQ(weight(kRed + kTexture, ""), kIsBlue);
+  EXPECT_EQ(weight(kRed, kGreen + kTexture), kIsBlue);
+  // A value of another type is not one.
+  EXPECT_EQ(weight(kRed, "\"float Kd\" 0.3"), kIsRed);
+}
+
+}  // namespace
+}  // namespace whit
