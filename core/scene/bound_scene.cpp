@@ -177,9 +177,17 @@ class Binder {
 
   void bind_materials() {
     for (const auto& m : description_.materials) {
-      scene_.materials.push_back(
-          bind_entity<Material>(m, "material", {Severity::Warning, "matte", "matte is used instead"}));
+      const PluginInfo* info = find(m, "material", {Severity::Warning, "matte", "matte is used instead"});
+      const bool meant = info == find_plugin("material", m.plugin);
+      scene_.materials.push_back(bind_as<Material>(m, *info, meant ? m.params : known_params(m.params, *info)));
     }
+  }
+
+  /// What a plugin understands of the parameters of the one that was meant.
+  const ParameterList& known_params(const ParameterList& params, const PluginInfo& info) {
+    std::vector<std::string> names;
+    for (const ParamSpec& spec : info.params) names.push_back(spec.name);
+    return keep_only(params, names);
   }
 
   std::shared_ptr<Material> named_material(const Entity& entity, const std::string& name, std::vector<int>* used) {

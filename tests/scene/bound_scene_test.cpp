@@ -54,5 +54,13 @@ TEST(BoundScene, AShapesParametersGoBeforeItsMaterials) {
   EXPECT_EQ(weight(kRed, "\"float Kd\" 0.3"), kIsRed);
 }
 
+TEST(BoundScene, AnUnknownMaterialBecomesMatteOfItsColour) {
+  const Loose scene("Material \"velvet\" " + kRed + "\"float gloss\" 2\nShape \"sphere\"");
+  EXPECT_EQ(scene.weight(), kIsRed);
+  ASSERT_EQ(scene.said.all().size(), 1u);
+  EXPECT_EQ(scene.said.all()[0].severity, Severity::Warning);
+  EXPECT_EQ(Loose("Material \"velvet\" " + kRed + "\nShape \"sphere\" " + kGreen).weight(), kIsGreen);
+}
+
 }  // namespace
 }  // namespace whit
