@@ -19,6 +19,7 @@ class Diffuse final : public AreaLight {
 };
 
 const Register<Diffuse> diffuse{
+    std::vector<std::string>{"area"},
     "area light",
     "diffuse",
     "A surface that radiates evenly in all directions.",

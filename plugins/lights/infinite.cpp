@@ -31,6 +31,7 @@ class InfiniteLight final : public EnvironmentLight {
 };
 
 const Register<InfiniteLight> infinite{
+    std::vector<std::string>{"exinfinite"},
     "light",
     "infinite",
     "Light from infinitely far away all around, constant or from a map.",

@@ -1,8 +1,9 @@
-// From statements to plugins: which of several values a material takes.
+// From statements to plugins: names that pbrt-v3 knows, and which of several values a material takes.
 #include "core/scene/bound_scene.h"
 
 #include <gtest/gtest.h>
 
+#include "core/plugin/registry.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/scene/scene_text.h"
 
@@ -38,6 +39,11 @@ const std::string kRed = "\"rgb Kd\" [0.5 0 0] ", kGreen = "\"rgb Kd\" [0 0.5 0]
                   kTexture = "\"texture Kd\" \"blue\" ";
 const RGB kIsRed(0.5f, 0, 0), kIsGreen(0, 0.5f, 0), kIsBlue(0, 0, 0.5f);
 const std::string kBlue = "Texture \"blue\" \"spectrum\" \"constant\" \"rgb value\" [0 0 0.5]\n";
+
+TEST(BoundScene, NamesThatPbrtKnows) {
+  EXPECT_EQ(find_plugin("area light", "area"), find_plugin("area light", "diffuse"));
+  EXPECT_EQ(find_plugin("light", "exinfinite"), find_plugin("light", "infinite"));
+}
 
 TEST(BoundScene, AShapesParametersGoBeforeItsMaterials) {
   // pbrt-v3 asks the shape first, for a texture and then for a value, and then the material in the same way.
