@@ -60,25 +60,20 @@ void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
                  v.x * m[0][2] + v.y * m[1][2] + v.z * m[2][2]);
   };
   const Vec3f move(m[3][0], m[3][1], m[3][2]);
-  const bool differentials = static_cast<bool>(rays.rx_d);
+  // All directions of a ray are divided by the length that its own has now: their ratio must stay.
+  if (rays.rx_d) {
+    for_lanes(rays.n, [&](int i) {
+      const float inverse = 1 / length(rotate(rays.d[i]));
+      rays.rx_o.set(i, rotate(rays.rx_o[i]) + move);
+      rays.ry_o.set(i, rotate(rays.ry_o[i]) + move);
+      rays.rx_d.set(i, rotate(rays.rx_d[i]) * inverse);
+      rays.ry_d.set(i, rotate(rays.ry_d[i]) * inverse);
+    });
+  }
   for_lanes(rays.n, [&](int i) {
     rays.o.set(i, rotate(rays.o[i]) + move);
     const Vec3f d = rotate(rays.d[i]);
     rays.d.set(i, d * (1 / length(d)));
-  });
-  if (!differentials) return;
-  // rays.d has been normalised, so the camera's scale is measured on one axis-independent quantity: the
-  // differential directions keep their own lengths relative to unit camera-space vectors.
-  const float scale =
-      1 /
-      static_cast<float>(std::cbrt(std::abs(Vec3d(camera[0][0], camera[0][1], camera[0][2])
-                                                .dot(Vec3d(camera[1][0], camera[1][1], camera[1][2])
-                                                         .cross(Vec3d(camera[2][0], camera[2][1], camera[2][2]))))));
-  for_lanes(rays.n, [&](int i) {
-    rays.rx_o.set(i, rotate(rays.rx_o[i]) + move);
-    rays.ry_o.set(i, rotate(rays.ry_o[i]) + move);
-    rays.rx_d.set(i, rotate(rays.rx_d[i]) * scale);
-    rays.ry_d.set(i, rotate(rays.ry_d[i]) * scale);
   });
 }
 

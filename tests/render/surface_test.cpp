@@ -287,6 +287,36 @@ TEST(Surface, AFarAwaySceneGivesTheSamePicture) {
   EXPECT_LE(error / static_cast<double>(near.size()), 1e-6);
 }
 
+TEST(Surface, FootprintsFollowAStretchedCamera) {
+  // A camera space twice as wide and high shows half of each: the picture of a screen window of half the size, and as
+  // sharply filtered.
+  const auto picture = [](const std::string& camera) {
+    const test::BuiltScene built(
+        "Film \"image\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+        "Sampler \"halton\" \"integer pixelsamples\" 16\n" +
+        camera + R"(
+WorldBegin
+  LightSource "distant" "point from" [0 1 0] "point to" [0 0 0]
+  Texture "checks" "spectrum" "checkerboard" "float uscale" 100 "float vscale" 100
+  Material "matte" "texture Kd" "checks"
+  Translate 0 -1 0
+  Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-50 0 0  50 0 0  50 0 100  -50 0 100] "float uv" [0 0 1 0 1 1 0 1]
+WorldEnd
+)");
+    return render(*built.scene, {}).picture.rgb;
+  };
+  const auto window = picture("Camera \"perspective\" \"float screenwindow\" [-.5 .5 -.5 .5]");
+  const auto stretched = picture("Scale 2 2 1 Camera \"perspective\"");
+  ASSERT_EQ(window.size(), stretched.size());
+  double difference = 0, sum = 0;
+  for (size_t i = 0; i < window.size(); ++i) {
+    difference += std::abs(stretched[i] - window[i]);
+    sum += window[i];
+  }
+  // What is left is of second order in the angle of a pixel, 0.05.
+  EXPECT_LT(difference / sum, 2e-3);
+}
+
 TEST(Surface, AnObjectFarAwayChangesNothing) {
   // It changes the scale of render space, by a power of two. What depends on lengths stays: a bump map on a mesh with
   // normals, and how wide a checkerboard is filtered that is seen in a ball.
