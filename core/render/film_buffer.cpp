@@ -35,12 +35,16 @@ TileSums::TileSums(Vec2i tile, const FilterTable& filter)
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   if (filter_->is_own_pixel()) return add_to_own_pixel(film_x, film_y, radiance);
-  // Pixel p is reached when p + 0.5 is within the radius of the sample; half-open, so that a box of radius
-  // 0.5 gives every sample to exactly one pixel.
+  // Pixel p is reached when p + 0.5 is within the radius of the sample, the rim included, so that a sample in the middle
+  // of its pixel reaches as far to both sides; but never beyond the reach, so that a box of radius 0.5 gives every
+  // sample to exactly one pixel.
   const float dx = film_x - 0.5f, dy = film_y - 0.5f;
-  const int px0 = std::max(static_cast<int>(std::floor(dx - filter_->x_radius())) + 1, x0_);
+  const auto first = [](float middle, float radius, int reach) {
+    return std::max(static_cast<int>(std::ceil(middle - radius)), static_cast<int>(std::floor(middle + 0.5f)) - reach);
+  };
+  const int px0 = std::max(first(dx, filter_->x_radius(), filter_->x_reach()), x0_);
   const int px1 = std::min(static_cast<int>(std::floor(dx + filter_->x_radius())), x0_ + width_ - 1);
-  const int py0 = std::max(static_cast<int>(std::floor(dy - filter_->y_radius())) + 1, y0_);
+  const int py0 = std::max(first(dy, filter_->y_radius(), filter_->y_reach()), y0_);
   const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
   for (int y = py0; y <= py1; ++y) {
     float* sums =

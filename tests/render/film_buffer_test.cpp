@@ -75,13 +75,12 @@ TEST(TileSums, ABoxGivesEachSampleToExactlyOnePixel) {
   }
 }
 
-TEST(TileSums, AFilterOfRadiusTwoReachesSixteenPixels) {
-  // From (5.5, 7.25): x centres within 2 of it, half-open, are 4.5 .. 7.5 (3.5 is exactly 2 away and is left out, 7.5 is
-  // not): four; y centres 5.5 .. 8.5: four.
+TEST(TileSums, AFilterReachesBothSidesAlike) {
+  // From (5.5, 7.25): x centres within 2 of it are 3.5 .. 7.5, both ends exactly 2 away: five; y centres 5.5 .. 8.5: four.
   const auto box = make_filter("box", 2);
   const auto pixels = reached(FilterTable(*box.plugin), 5.5f, 7.25f);
-  ASSERT_EQ(pixels.size(), 16u);
-  EXPECT_EQ(pixels.front().x, 4);
+  ASSERT_EQ(pixels.size(), 20u);
+  EXPECT_EQ(pixels.front().x, 3);
   EXPECT_EQ(pixels.front().y, 5);
   EXPECT_EQ(pixels.back().x, 7);
   EXPECT_EQ(pixels.back().y, 8);
@@ -165,15 +164,15 @@ TEST(ResolveFilm, ASampleNearATilesEdgeReachesBothSides) {
   tiles.emplace_back(Vec2i(1, 0), table);
   tiles[0].add(15.9f, 8.5f, {1, 1, 1});
   EXPECT_NEAR(tiles[0].at(16, 8)[3] / tiles[0].at(15, 8)[3], 0.4 / 0.6, 0.05);
-  // Another one in pixel 16, in tile 1, black, weight 1 - |16.5 - 16.5| there: the mean is 0.4 / (0.4 + 1).
-  tiles[1].add(16.5f, 8.5f, {0, 0, 0});
+  // Another one in pixel 16, in tile 1, black, weight 1 - |16.5 - 16.6| there: the mean is 0.4 / (0.4 + 0.9).
+  tiles[1].add(16.6f, 8.5f, {0, 0, 0});
   Picture picture;
   picture.resolution = {32, 16};
   picture.window = {{15, 8}, {17, 9}};
   resolve_film(tiles, {0, 0}, 2, table, 1, picture);
   ASSERT_EQ(picture.rgb.size(), 6u);
   EXPECT_EQ(picture.rgb[0], 1);
-  EXPECT_NEAR(picture.rgb[3], 0.4 / 1.4, 0.01);
+  EXPECT_NEAR(picture.rgb[3], 0.4 / 1.3, 0.01);
 }
 
 }  // namespace
