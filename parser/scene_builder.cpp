@@ -227,12 +227,15 @@ void SceneBuilder::include(Statement& s) { include_ = IncludeRequest{s.names[0],
 
 void SceneBuilder::begin_world(Statement& s) {
   scenes_.push_back(options_);
+  // What is said behind WorldEnd starts from pbrt's defaults, as the first world did.
+  options_ = SceneDescription();
+  options_.folder = scenes_.back().folder;
   in_world_ = true;
   world_missing_reported_ = false;
   SceneDescription& world = scenes_.back();
   world.world_begin = s.where;
   world.transforms.assign(1, TransformPair());
-  world.camera_transform = intern(camera_transform_);
+  world.camera_transform = intern(std::exchange(camera_transform_, TransformPair()));
   MaterialDescription matte;
   matte.plugin = "matte";
   world.materials.push_back(std::move(matte));

@@ -125,7 +125,7 @@ class SceneBuilder {
 
   bool in_world_ = false;
   bool world_missing_reported_ = false;
-  SceneDescription options_;  ///< What was said before WorldBegin; kept for the next one.
+  SceneDescription options_;  ///< What was said before WorldBegin.
   TransformPair camera_transform_;
   std::vector<SceneDescription> scenes_;
 

@@ -27,24 +27,29 @@ TEST(Scenes, OptionsArePluginsWithParameters) {
   EXPECT_EQ(Parsed("WorldBegin WorldEnd").scene().film.plugin, "");
 }
 
-TEST(Scenes, SeveralWorldsShareOptionsAndNothingElse) {
+TEST(Scenes, SeveralWorldsShareNothing) {
   const Parsed parsed(
-      "Sampler \"halton\"\nWorldBegin\nMaterial \"mirror\" Translate 1 0 0 ReverseOrientation\n"
+      "Translate 0 0 5 Camera \"perspective\" Sampler \"halton\" TransformTimes 0 2\nWorldBegin\n"
+      "Material \"mirror\" Translate 1 0 0 ReverseOrientation\n"
       "Texture \"t\" \"float\" \"constant\" MakeNamedMaterial \"m\" \"string type\" \"glass\"\nObjectBegin \"o\" "
       "ObjectEnd\n"
       "WorldEnd\nFilm \"image\"\nWorldBegin\nShape \"s\" \"texture alpha\" \"t\"\nNamedMaterial \"m\" ObjectInstance "
-      "\"o\"\n"
+      "\"o\" CoordSysTransform \"camera\"\n"
       "WorldEnd\n");
   ASSERT_EQ(parsed.result.scenes.size(), 2u);
   EXPECT_EQ(parsed.result.scenes[0].film.plugin, "");
   const SceneDescription& second = parsed.result.scenes[1];
-  EXPECT_EQ(second.sampler.plugin, "halton");
+  EXPECT_EQ(second.folder, "/nowhere");
   EXPECT_EQ(second.film.plugin, "image");
+  EXPECT_EQ(second.sampler.plugin, "");
+  EXPECT_EQ(second.camera.plugin, "");
+  EXPECT_EQ(second.camera_transform, 0);
+  EXPECT_EQ(second.time_end, 1);
   EXPECT_EQ(second.shapes.at(0).transform, 0);
   EXPECT_EQ(second.shapes.at(0).material, 0);
   EXPECT_FALSE(second.shapes.at(0).reverse_orientation);
   EXPECT_EQ(second.materials.size(), 1u);
-  EXPECT_EQ(parsed.all().size(), 3u) << parsed.messages();  // t, m and o are not known any more.
+  EXPECT_EQ(parsed.all().size(), 4u) << parsed.messages();  // t, m, o and "camera" are not known any more.
 }
 
 TEST(Scenes, MaterialsAndAreaLightsFollowAttributeBlocksOnly) {
