@@ -154,6 +154,7 @@ class Formatter {
     while (!open_.empty()) {
       const uint64_t errors = reporter_.errors();
       const ReadResult result = read_statement(open_.back().lexer, statement_);
+      append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
       put_comments_before(statement_);
       if (result == ReadResult::End) {
         open_.pop_back();
@@ -168,16 +169,17 @@ class Formatter {
 
  private:
   struct OpenFile {
-    OpenFile(std::string_view text, uint32_t number, Reporter& reporter)
-        : file(number), lexer(text, number, reporter) {}
+    OpenFile(std::string_view text, uint32_t number, ParameterList behind, Reporter& reporter)
+        : file(number), lexer(text, number, reporter), trailing(std::move(behind)) {}
     uint32_t file;
     Lexer lexer;
+    ParameterList trailing;       ///< Those behind the Include, for the last statement.
     std::vector<Token> comments;  ///< Read, not yet written.
     uint64_t written_to = 0;      ///< The byte of the file behind the last thing written.
   };
 
-  void push(uint32_t file) {
-    open_.emplace_back(sources_.text(file), file, reporter_);
+  void push(uint32_t file, ParameterList trailing = {}) {
+    open_.emplace_back(sources_.text(file), file, std::move(trailing), reporter_);
     // The lexers hold the address of their file's comments, which moves with the stack.
     for (OpenFile& open : open_) open.lexer.collect_comments(&open.comments);
   }
@@ -280,7 +282,7 @@ class Formatter {
     };
     const std::optional<uint32_t> file =
         open_include(sources_, reporter_, folder_, statement_.names[0], statement_.names_at[0], reading);
-    if (file) push(*file);
+    if (file) push(*file, std::move(statement_.parameters));
   }
 
   Sources& sources_;

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "parser/parameters.h"
+
 namespace whit {
 
 bool check_is_scene(const Sources& sources, uint32_t file, Reporter& reporter) {
@@ -38,6 +40,17 @@ std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const
   if (binary.empty()) return file;
   reporter.error(where, in_quotes(full) + " is not a scene file: " + binary);
   return std::nullopt;
+}
+
+void append_trailing(Lexer& lexer, ReadResult result, ParameterList& trailing, Statement& statement) {
+  if (trailing.empty() || lexer.peek().kind != TokenKind::End) return;
+  if (result == ReadResult::Good && statement.row->arguments.parameters) {
+    append_parameters(statement.parameters, std::move(trailing), lexer.reporter());
+  } else if (result != ReadResult::Broken) {  // A broken statement has been reported.
+    lexer.reporter().error(trailing.front().where, "no statement to take the parameters behind Include",
+                           "they belong to the last statement of the included file");
+  }
+  trailing.clear();
 }
 
 }  // namespace whit

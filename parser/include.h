@@ -7,6 +7,7 @@
 
 #include "parser/reporter.h"
 #include "parser/source.h"
+#include "parser/statements.h"
 
 namespace whit {
 
@@ -21,5 +22,9 @@ std::string join_path(const std::string& folder, const std::string& path);
 std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const std::string& folder,
                                      const std::string& path, SourcePos where,
                                      const std::function<bool(uint32_t)>& is_open);
+
+/// Gives `trailing`, the parameters behind an Include, to the last statement of its file: for pbrt a parameter list does
+/// not end where a file ends. Call with every statement read from that file; the others are left as they are.
+void append_trailing(Lexer& lexer, ReadResult result, ParameterList& trailing, Statement& statement);
 
 }  // namespace whit

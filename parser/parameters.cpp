@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -379,6 +380,11 @@ bool read_parameters(Lexer& lexer, ParameterList& out) {
   }
   drop_duplicates(out, lexer.reporter());
   return lexer.peek().kind != TokenKind::Bad;
+}
+
+void append_parameters(ParameterList& out, ParameterList&& more, Reporter& reporter) {
+  std::move(more.begin(), more.end(), std::back_inserter(out));
+  drop_duplicates(out, reporter);
 }
 
 }  // namespace whit

@@ -17,4 +17,7 @@ std::optional<ParamType> find_param_type(std::string_view name);
 /// and reading has to resynchronise. Of duplicates the last is kept, with a warning.
 bool read_parameters(Lexer& lexer, ParameterList& out);
 
+/// Adds parameters to a list as if they stood behind it in the file.
+void append_parameters(ParameterList& out, ParameterList&& more, Reporter& reporter);
+
 }  // namespace whit

@@ -34,10 +34,11 @@ class FileReader {
     push(main_file);
     while (!open_.empty()) {
       const ReadResult result = read_statement(open_.back().lexer, statement_);
+      append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
       if (result == ReadResult::End) open_.pop_back();
       if (result != ReadResult::Good) continue;
       builder.apply(statement_);
-      if (const auto include = builder.take_include()) this->include(*include);
+      if (auto include = builder.take_include()) this->include(*include);
     }
     return bytes_;
   }
@@ -46,19 +47,21 @@ class FileReader {
   struct OpenFile {
     uint32_t file;
     Lexer lexer;
+    ParameterList trailing;  ///< Those behind the Include, for the last statement.
   };
 
-  void push(uint32_t file) {
+  void push(uint32_t file, ParameterList trailing = {}) {
     const std::string_view text = sources_.text(file);
     bytes_ += text.size();
-    open_.push_back({file, Lexer(text, file, reporter_)});
+    open_.push_back({file, Lexer(text, file, reporter_), std::move(trailing)});
   }
 
-  void include(const SceneBuilder::IncludeRequest& request) {
+  void include(SceneBuilder::IncludeRequest& request) {
     const auto is_open = [this](uint32_t file) {
       return std::any_of(open_.begin(), open_.end(), [file](const OpenFile& open) { return open.file == file; });
     };
-    if (const auto file = open_include(sources_, reporter_, folder_, request.path, request.where, is_open)) push(*file);
+    if (const auto file = open_include(sources_, reporter_, folder_, request.path, request.where, is_open))
+      push(*file, std::move(request.parameters));
   }
 
   Sources& sources_;

@@ -50,7 +50,8 @@ SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::stri
 
 void SceneBuilder::apply(Statement& statement) {
   if (!allowed(statement)) return;
-  resolve_textures(statement.parameters);
+  // An Include's parameters wait for the statement they belong to: textures may be defined before it.
+  if (statement.row->handler != &SceneBuilder::include) resolve_textures(statement.parameters);
   (this->*statement.row->handler)(statement);
 }
 
@@ -221,7 +222,9 @@ void SceneBuilder::make_named_medium(Statement& s) {
 
 void SceneBuilder::medium_interface(Statement& s) { scene().media_uses.push_back(s.where); }
 
-void SceneBuilder::include(Statement& s) { include_ = IncludeRequest{s.names[0], s.names_at[0]}; }
+void SceneBuilder::include(Statement& s) {
+  include_ = IncludeRequest{s.names[0], s.names_at[0], std::move(s.parameters)};
+}
 
 // -------------------------------------------------------------------------------------------------- blocks
 

@@ -23,8 +23,9 @@ class SceneBuilder {
   void apply(Statement& statement);
 
   struct IncludeRequest {
-    std::string path;  ///< As the file gives it.
-    SourcePos where;   ///< The string with the path.
+    std::string path;          ///< As the file gives it.
+    SourcePos where;           ///< The string with the path.
+    ParameterList parameters;  ///< For the last statement of that file; texture names are unresolved.
   };
   /// The file the last statement wants read now, if it was an Include.
   std::optional<IncludeRequest> take_include();

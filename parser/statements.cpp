@@ -70,8 +70,8 @@ constexpr StatementRow kStatements[] = {
      "Accepted; media are not simulated."},
     {"MediumInterface", media(), Block::Both, &B::medium_interface,
      "Accepted; media are not simulated."},
-    {"Include", name("\"file\""), Block::Both, &B::include,
-     "Reads a file as if it stood here. Its path starts at the folder of the main file."},
+    {"Include", plugin("\"file\""), Block::Both, &B::include,
+     "Reads a file as if it stood here. Its path starts at the folder of the main file. Parameters behind it belong to the file's last statement."},
 
     {"WorldBegin", nothing(), Block::Options, &B::begin_world,
      "Ends the options, forgets the transforms and begins the scene."},

@@ -125,6 +125,16 @@ TEST_F(FormatFiles, IncludesStayOrAreExpanded) {
             "WorldBegin\nAttributeBegin\n  # in a\n  Shape \"s\"\nAttributeEnd\nWorldEnd\n");
 }
 
+TEST_F(FormatFiles, ParametersBehindAnInclude) {
+  std::ofstream(folder_ + "/a.pbrt") << "Shape \"s\" \"float r\" 1  # in a\n";
+  const std::string text = "WorldBegin\nInclude \"a.pbrt\"\n  \"float q\" 2\nWorldEnd\n";
+  EXPECT_EQ(formatted(text, {}, folder_), "WorldBegin\nInclude \"a.pbrt\" \"float q\" 2\nWorldEnd\n");
+  FormatOptions options;
+  options.expand_includes = true;
+  EXPECT_EQ(formatted(text, options, folder_),
+            "WorldBegin\nShape \"s\" \"float r\" 1 \"float q\" 2  # in a\nWorldEnd\n");
+}
+
 /// A fan of `triangles` triangles around vertex 0, far from the origin when `offset` is large.
 std::string fan(int triangles, double offset) {
   std::ostringstream out;

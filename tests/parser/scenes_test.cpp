@@ -185,6 +185,41 @@ TEST_F(Files, IncludesAreRelativeToTheMainFileAndShareItsState) {
   EXPECT_GT(result.bytes, sources_.text(0).size());
 }
 
+TEST_F(Files, ParametersBehindAnIncludeBelongToItsLastStatement) {
+  // As in pbrt-v3's clouds: the file holds a grid, the scene says how dense it is.
+  const std::string main = write("main.pbrt", in_world("Texture \"t\" \"float\" \"constant\"\n"
+                                                       "Include \"a.pbrt\" \"color c\" [1 2 3] \"float r\" 4\n"
+                                                       "  \"texture alpha\" \"t\"\nShape \"disk\""));
+  write("a.pbrt", "Shape \"cone\"\nInclude \"sub/b.pbrt\"  # the end");
+  write("sub/b.pbrt", "Shape \"sphere\" \"float r\" 9 # replaced\n");
+  const ParseResult result = parse_file(sources_, main);
+  ASSERT_EQ(result.diagnostics.all().size(), 1u);
+  EXPECT_EQ(result.diagnostics.all()[0].message, "parameter \"r\" is given twice");
+  const auto& shapes = result.scenes.at(0).shapes;
+  ASSERT_EQ(shapes.size(), 3u);
+  EXPECT_TRUE(shapes[0].params.empty());
+  ASSERT_EQ(shapes[1].params.size(), 3u);
+  EXPECT_EQ(shapes[1].params[0].numbers(), (std::vector<double>{1, 2, 3}));
+  EXPECT_EQ(shapes[1].params[1].numbers(), (std::vector<double>{4}));
+  EXPECT_EQ(shapes[1].params[2].textures().at(0).float_texture, 0);
+  EXPECT_TRUE(shapes[2].params.empty());
+}
+
+TEST_F(Files, ParametersBehindAnIncludeThatTakesNone) {
+  const std::string main = write("main.pbrt", in_world("Include \"a.pbrt\" \"float r\" 4\n"
+                                                       "Include \"empty.pbrt\" \"float r\" 4"));
+  write("a.pbrt", "Translate 1 2 3");
+  write("empty.pbrt", "# nothing");
+  const ParseResult result = parse_file(sources_, main);
+  ASSERT_EQ(result.diagnostics.all().size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    const Diagnostic& d = result.diagnostics.all()[i];
+    EXPECT_EQ(d.severity, Severity::Error);
+    EXPECT_EQ(sources_.place(d.where).line, 2 + i);
+    EXPECT_NE(d.message.find("no statement to take the parameters"), std::string::npos) << d.message;
+  }
+}
+
 TEST_F(Files, UnclosedBlockFromAnInclude) {
   const std::string main = write("main.pbrt", in_world("Include \"a.pbrt\""));
   write("a.pbrt", "\nAttributeBegin");
