@@ -194,6 +194,23 @@ class Rendering(Case):
         self.assertRegex(err, r'^warns.pbrt:7:18: warning: sphere has no parameter "raduis"\n')
         self.assertIn('did you mean "radius"?', err)
 
+    def test_equal_messages_are_shown_three_times(self):
+        # Lines 7 to 1006, as an exporter with a mistake writes them.
+        self.write("many.pbrt", SCENE.replace('  Shape "sphere"\n', '  Shape "sphere" "float raduis" [1]\n' * 1000))
+        code, _, err = self.whit("many.pbrt", "--quiet")
+        self.assertEqual(code, 0)
+        self.assertEqual(re.findall(r"(?m)^many.pbrt:(\d+):18: warning: ", err), ["7", "8", "9"])
+        self.assertIn("the same at 997 more places, the last at many.pbrt:1006:18\n", err)
+        self.assertTrue(err.endswith("0 errors, 1000 warnings\n"), err)
+
+    def test_a_hundred_messages_are_shown(self):
+        names = "".join('  Texture "t%d" "color" "imagemap" "string filename" "%d.png"\n' % (i, i) for i in range(150))
+        self.write("many.pbrt", SCENE.replace("  Shape", names + "  Shape"))
+        code, _, err = self.whit("many.pbrt", "--quiet")
+        self.assertEqual(code, 4)
+        self.assertEqual(len(re.findall("error: cannot open", err)), 100)
+        self.assertTrue(err.endswith("150 errors, 0 warnings; 50 of them are not shown\n"), err[-300:])
+
     def test_strict(self):
         self.write("warns.pbrt", WARNS)
         self.fails(3, r"^warns.pbrt:7:18: error: ", "warns.pbrt", "--strict")

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <tuple>
 #include <vector>
 
@@ -18,20 +19,42 @@ bool use_colour() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR")
 void say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
 
 void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings) {
-  const bool colour = use_colour();
-  int errors = 0, warnings = 0;
+  // A mistake of an exporter's comes a thousand times; a few places are as good as all.
+  constexpr size_t kMostEqual = 3, kMost = 100;
   std::vector<Diagnostic> ordered = diagnostics.all();
   std::stable_sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.where.file, a.where.offset) < std::tie(b.where.file, b.where.offset);
   });
+  struct Equal {
+    size_t count = 0, shown = 0;
+    SourcePos last;
+  };
+  std::map<std::tuple<Severity, std::string, std::string>, Equal> all_equal;
+  const auto equal_to = [&](const Diagnostic& d) -> Equal& { return all_equal[{d.severity, d.message, d.remedy}]; };
+  size_t counts[2] = {}, shown[2] = {}, hidden = 0;  // by severity
   for (const Diagnostic& d : ordered) {
-    const bool error = d.severity == Severity::Error;
-    (error ? errors : warnings) += 1;
-    if (error || !quiet_warnings) fmt::print(stderr, "{}", sources.render_diagnostic(d, colour));
+    ++counts[static_cast<size_t>(d.severity)];
+    ++equal_to(d).count;
+    equal_to(d).last = d.where;
   }
+  for (const Diagnostic& d : ordered) {
+    Equal& equal = equal_to(d);
+    if (equal.shown == kMostEqual || (quiet_warnings && d.severity == Severity::Warning)) continue;
+    if (shown[static_cast<size_t>(d.severity)]++ >= kMost) {
+      ++hidden;
+      continue;
+    }
+    fmt::print(stderr, "{}", sources.render_diagnostic(d, use_colour()));
+    if (++equal.shown == kMostEqual && equal.count > kMostEqual)
+      say(fmt::format("  the same at {} more places, the last at {}", equal.count - kMostEqual,
+                      sources.location(equal.last)));
+  }
+  const size_t warnings = counts[static_cast<size_t>(Severity::Warning)];
+  const size_t errors = counts[static_cast<size_t>(Severity::Error)];
   if (errors + warnings < 2) return;
-  const auto counted = [](int n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
-  say(counted(errors, "error") + ", " + counted(warnings, "warning"));
+  const auto counted = [](size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+  say(counted(errors, "error") + ", " + counted(warnings, "warning") +
+      (hidden > 0 ? fmt::format("; {} of them are not shown", hidden) : ""));
 }
 
 int exit_code(const Diagnostics& diagnostics) {

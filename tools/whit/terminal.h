@@ -15,7 +15,8 @@ bool use_colour();
 /// Prints a line to stderr.
 void say(const std::string& line);
 
-/// Prints diagnostics in file order with their places, and how many there were. `quiet_warnings` keeps errors only.
+/// Prints diagnostics in file order with their places, and how many there were: of equal ones three, of errors and of
+/// warnings a hundred. `quiet_warnings` keeps errors only.
 void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings = false);
 
 /// The exit code that errors lead to: 3 when the scene is wrong, 4 when files could not be read, 0 without errors.
