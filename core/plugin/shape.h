@@ -39,6 +39,7 @@ struct MeshData {
   std::vector<float> normals;     ///< Flat, 3 per vertex, object space, or empty.
   std::vector<float> tangents;    ///< pbrt's "S", flat, 3 per vertex, or empty.
   std::vector<float> uvs;         ///< Flat, 2 per vertex, or empty.
+  size_t degenerate = 0;          ///< How many triangles of the user's were left out because they have no area.
 };
 
 /// Removes the triangles that have no area (two corners alike, or all three on a line as far as double

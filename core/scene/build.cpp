@@ -31,6 +31,17 @@ struct Group {
   bool moving_shape = false;  ///< Holds one shape in object space that moves by its own transform.
 };
 
+/// Triangles without area: there can be some in every mesh of thousands, so they are counted and reported once.
+struct DegenerateTriangles {
+  size_t triangles = 0, shapes = 0;
+  SourcePos first;
+  void add(size_t n, SourcePos where) {
+    if (n == 0) return;
+    if (triangles == 0) first = where;
+    triangles += n, ++shapes;
+  }
+};
+
 /// The power of two that brings `radius` to between 64 and 128, where floats and Embree are at ease.
 double sane_scale(double radius) {
   if (!(radius > 0) || !std::isfinite(radius)) return 1;
@@ -217,6 +228,12 @@ class Builder {
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
       group.shapes[0].mesh = {};
     }
+    if (const auto& [triangles, shapes, first] = degenerate_; triangles > 0) {
+      diagnostics_.warning(first,
+                           fmt::format("{} degenerate triangle{} (no area)", triangles, triangles == 1 ? "" : "s") +
+                               (shapes > 1 ? fmt::format(" in {} shapes, the first here", shapes) : ""),
+                           "left out; the picture is the same without");
+    }
   }
 
   void bake_shape(const Group& group, LoadedShape& loaded) {
@@ -234,11 +251,7 @@ class Builder {
       size_t degenerate = 0;
       scene_->meshes.push_back(bake_mesh(loaded.mesh, to_group, degenerate));
       shape.mesh = scene_->meshes.back().get();
-      if (degenerate > 0) {
-        diagnostics_.warning(
-            d.where, fmt::format("{} degenerate triangle{} without area", degenerate, degenerate == 1 ? "" : "s"),
-            "left out; the picture is the same without");
-      }
+      degenerate_.add(loaded.mesh.degenerate + degenerate, d.where);
       if (shape.mesh->indices.empty()) return;
     } else if (dynamic_cast<CurveShape*>(&plugin)) {
       scene_->curves.push_back(bake_curves(loaded.curves, to_group));
@@ -409,6 +422,7 @@ class Builder {
   std::map<int, std::vector<size_t>> moving_;  ///< Groups of moving shapes, by object (-1: the world).
   std::map<std::pair<int, int>, int> keys_;
   std::vector<std::pair<int, bool>> lit_shapes_;
+  DegenerateTriangles degenerate_;
   double scene_radius_ = 1;
 };
 

@@ -74,16 +74,14 @@ struct PlyMeshShape final : MeshShape {
     out.indices = std::move(mesh.indices);
     out.normals = std::move(mesh.normals);
     out.uvs = std::move(mesh.uvs);
-    warn_of_left_out(ctx, mesh.skipped_faces, "faces with fewer than 3 or more than 4 corners");
-    warn_of_left_out(ctx, remove_degenerate_triangles(out), "degenerate triangles (no area)");
+    out.degenerate = remove_degenerate_triangles(out);
+    if (mesh.skipped_faces > 0) {
+      ctx.diagnostics->warning(filename.where,
+                               fmt::format("{} has {} faces with fewer than 3 or more than 4 corners",
+                                           filename.as_given, mesh.skipped_faces),
+                               "they are left out");
+    }
     return true;
-  }
-
- private:
-  void warn_of_left_out(const PrepareContext& ctx, size_t count, const char* what) const {
-    if (count == 0) return;
-    ctx.diagnostics->warning(filename.where, fmt::format("{} has {} {}", filename.as_given, count, what),
-                             "they are left out");
   }
 };
 

@@ -28,18 +28,13 @@ struct TriangleMesh final : MeshShape {
     if (surface_parameters().given) check_uvs(diagnostics, surface_parameters());
   }
 
-  bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
+  bool build_mesh(const PrepareContext&, MeshData& out) override {
     out.positions = P.values;
     out.indices.assign(indices.values.begin(), indices.values.end());
     out.normals = to_floats(N.values);
     out.tangents = to_floats(S.values);
     if (surface_parameters().given) out.uvs = to_floats(surface_parameters().values.first(2 * vertex_count()));
-    if (const size_t removed = remove_degenerate_triangles(out)) {
-      ctx.diagnostics->warning(
-          indices.where,
-          fmt::format("trianglemesh has {} degenerate triangle{} (no area)", removed, removed == 1 ? "" : "s"),
-          removed == 1 ? "it is left out" : "they are left out");
-    }
+    out.degenerate = remove_degenerate_triangles(out);
     return true;
   }
 

@@ -1,0 +1,35 @@
+// What building a scene says.
+#include <gtest/gtest.h>
+
+#include "tests/scene/scene_text.h"
+
+namespace whit {
+namespace {
+
+/// What building `world` reports, as the user sees it.
+std::string said_of(const std::string& world) {
+  test::Planned planned("WorldBegin\nLightSource \"point\"\n" + world + "\nWorldEnd\n");
+  Diagnostics said;
+  TextureStore textures;
+  EXPECT_TRUE(build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said));
+  std::string text;
+  for (const Diagnostic& d : said.all()) text += planned.sources.render_diagnostic(d, false);
+  return text;
+}
+
+TEST(Build, DegenerateTrianglesOfAllShapesAreSaidOnce) {
+  // One triangle with area, and one with two corners alike.
+  const std::string mesh =
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 1 1] \"point P\" [-1 -1 0  1 -1 0  1 1 0]\n";
+  EXPECT_EQ(said_of("Shape \"sphere\""), "");
+  EXPECT_NE(said_of(mesh).find("test.pbrt:3:1: warning: 1 degenerate triangle (no area)\n"), std::string::npos)
+      << said_of(mesh);
+  const std::string said = said_of("Shape \"sphere\"\n" + mesh + mesh + "ObjectBegin \"o\"\n" + mesh +
+                                   "ObjectEnd ObjectInstance \"o\" ObjectInstance \"o\"");
+  EXPECT_EQ(said.find("test.pbrt:4:1: warning: 3 degenerate triangles (no area) in 3 shapes, the first here\n"), 0u)
+      << said;
+  EXPECT_EQ(said.find("warning", 30), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace whit
