@@ -504,17 +504,25 @@ class MeshReader {
   PlyMesh& out_;
 };
 
+/// The element of that name; null when there is none, or more than one.
+const Element* only_element(const Header& header, const char* name) {
+  const Element* found = nullptr;
+  for (const Element& e : header.elements)
+    if (e.name == name) found = found ? nullptr : &e;
+  return found;
+}
+
+/// True for a mesh of no faces, as programs write it that export whatever is there.
+bool is_empty_mesh(const Header& header) {
+  const Element* face = only_element(header, "face");
+  return only_element(header, "vertex") && face && face->count == 0;
+}
+
 /// What the header must have for there to be a mesh.
 std::string check_header(const Header& header) {
-  const auto element = [&](const char* name) -> const Element* {
-    const Element* found = nullptr;
-    for (const Element& e : header.elements)
-      if (e.name == name) found = found ? nullptr : &e;
-    return found;
-  };
-  const Element *vertex = element("vertex"), *face = element("face");
+  const Element *vertex = only_element(header, "vertex"), *face = only_element(header, "face");
   if (!vertex || vertex->count == 0) return "PLY file has no vertices";
-  if (!face || face->count == 0) return "PLY file has no faces";
+  if (!face) return "PLY file has no faces";
   const VertexColumns columns(*vertex);
   if (columns.position[0] < 0 || columns.position[1] < 0 || columns.position[2] < 0) {
     return "PLY vertices lack x, y or z";
@@ -561,6 +569,7 @@ std::string parse_ply(std::string_view bytes, PlyMesh& out) {
   out = {};
   Header header;
   std::string error = parse_header(bytes, header);
+  if (error.empty() && is_empty_mesh(header)) return {};
   if (error.empty()) error = check_header(header);
   if (!error.empty()) return error;
   if (header.format == Format::Ascii) {

@@ -19,7 +19,7 @@ struct PlyMesh {
   size_t skipped_faces = 0;       ///< Faces with fewer than 3 or more than 4 corners, which are left out.
 };
 
-/// Reads the mesh from the file's bytes. Returns "" or what is wrong ("PLY data ends early"); `out` is then
+/// Reads the mesh from the file's bytes; it is empty if the file says that there are no faces. Returns "" or what is wrong ("PLY data ends early"); `out` is then
 /// unspecified. Counts of the header are checked against the size of the data before anything is allocated.
 std::string parse_ply(std::string_view bytes, PlyMesh& out);
 

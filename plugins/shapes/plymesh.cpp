@@ -69,6 +69,10 @@ struct PlyMeshShape final : MeshShape {
       ctx.diagnostics->file_error(filename.where, fmt::format("cannot read {}: {}", filename.as_given, error));
       return false;
     }
+    if (mesh.indices.empty() && mesh.skipped_faces == 0) {
+      ctx.diagnostics->warning(filename.where, fmt::format("{} has no faces", filename.as_given),
+                               "the shape is left out");
+    }
     out.owned_positions = std::move(mesh.positions);
     out.positions = out.owned_positions;
     out.indices = std::move(mesh.indices);

@@ -182,7 +182,7 @@ TEST(Ply, BadContentsAreErrors) {
   says(header("ascii", 3, kXyz, 1, "property int i\nend_header\n") + three + "1", "lack \"vertex_indices\"");
   says(header("ascii", 3, kXyz, 1, "property list uchar float vertex_indices\nend_header\n") + three + "3 0 1 2",
        "integers");
-  says(header("ascii", 3, kXyz, 0) + three, "no faces");
+  says("ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(kXyz) + "end_header\n" + three, "no faces");
   says(header("ascii", 0, kXyz, 1) + "3 0 1 2", "no vertices");
   says(header("utf8", 3, kXyz, 1) + three + "3 0 1 2", "format is unknown");
   says("ply\nformat ascii 1.0\nelement vertex x\n", "count is no number");
@@ -194,6 +194,14 @@ TEST(Ply, BadContentsAreErrors) {
   std::string s = binary_square<float, uint8_t, int32_t>(Order::Little, "float", "uchar", "int");
   s.replace(s.size() - 4, 4, bytes(Order::Little, int32_t{-7}));
   says(s, "does not exist");
+}
+
+TEST(Ply, AMeshMayBeEmpty) {
+  for (const uint64_t vertices : {0, 1}) {
+    PlyMesh mesh;
+    EXPECT_EQ(parse_ply(header("ascii", vertices, kXyz, 0) + "0 0 0", mesh), "");
+    EXPECT_TRUE(mesh.indices.empty());
+  }
 }
 
 TEST(Ply, TinyNumbersAreZeroNotErrors) {

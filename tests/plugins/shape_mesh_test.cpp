@@ -126,6 +126,18 @@ TEST(PlyMesh, ReadsAFile) {
   EXPECT_TRUE(made.says("1 faces with fewer than 3")) << made.said();
 }
 
+TEST(PlyMesh, AnEmptyMeshIsLeftOut) {
+  const TemporaryFile file("e.ply",
+                           "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+                           "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n");
+  Made made("plymesh", {text("filename", file.path())});
+  MeshData mesh;
+  ASSERT_TRUE(made.build(mesh)) << made.said();
+  EXPECT_TRUE(mesh.indices.empty());
+  EXPECT_TRUE(made.says("e.ply has no faces")) << made.said();
+  EXPECT_FALSE(made.diagnostics.has_errors());
+}
+
 TEST(PlyMesh, ErrorsStandAtTheFileName) {
   const TemporaryFile file("b.ply",
                            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
