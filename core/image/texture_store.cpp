@@ -148,6 +148,7 @@ std::shared_ptr<const MipMap> TextureStore::decode(ImageTexture::Source& source)
     source.error = fmt::format("cannot decode image \"{}\": {}", spec.path, e.what());
   }
   source.failed = !source.pyramid;
+  if (source.failed) failed_ = true;
   return source.pyramid;
 }
 

@@ -89,6 +89,9 @@ class TextureStore {
 
   TextureStatistics statistics() const;
 
+  /// True once a texture could not be decoded. Cheap, for a render to ask now and then.
+  bool failed() const { return failed_.load(std::memory_order_relaxed); }
+
   /// Why textures could not be decoded, one line each naming the file; empty when all is well.
   std::vector<std::string> errors() const;
 
@@ -107,6 +110,7 @@ class TextureStore {
   std::map<TextureKey, std::unique_ptr<ImageTexture>> textures_;
   std::shared_ptr<Memory> memory_;
   std::atomic<size_t> limit_{size_t{1} << 30};
+  std::atomic<bool> failed_{false};
   std::atomic<int64_t> decodes_{0}, evictions_{0}, clock_{0};  // clock_ counts changes of the texture in use
 };
 

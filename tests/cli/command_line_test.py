@@ -227,6 +227,18 @@ class Rendering(Case):
         self.assertTrue(self.same("rest.exr", self.picture(scene="empty.pbrt")))
         self.assertFalse(self.same("rest.exr", self.picture(name="whole.exr")))
 
+    def test_a_broken_texture_ends_the_render(self):
+        # A picture whose rows are cut off, as a download may leave it, on a sphere that fills a picture of 15625 tiles.
+        with open(self.path("broken.pfm"), "wb") as f:
+            f.write(b"PF\n64 64\n-1.0\n" + bytes(64 * 64))
+        textured = 'Texture "t" "color" "imagemap" "string filename" "broken.pfm" Material "matte" "texture Kd" "t" Shape'
+        scene = SCENE.replace("Shape", textured).replace("[40]", "[5]").replace("[32]", "[2000]").replace("[24]", "[2000]")
+        self.write("textured.pbrt", scene)
+        self.fails(4, "broken.pfm", "textured.pbrt", "--quiet", "--spp", "4000")
+        code, _, err = self.whit("textured.pbrt", "--quiet", "--keep-going", "--display", "none", "--quick")
+        self.assertEqual(code, 0)
+        self.assertIn("broken.pfm", err)
+
     def test_spp_and_seed(self):
         a = self.picture(name="a.exr")
         self.assertTrue(self.same(a, self.picture("--spp", "2", "--seed", "0", name="b.exr")))

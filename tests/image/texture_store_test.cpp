@@ -139,7 +139,9 @@ TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {
   const std::string path = constant_file("cut", 64, 1);
   std::filesystem::resize_file(path, 500);
   const ImageTexture* texture = store.add(spec_of(path));
+  EXPECT_FALSE(store.failed());
   EXPECT_EQ(look(texture), 0);
+  EXPECT_TRUE(store.failed());
   EXPECT_EQ(look(texture), 0);
   EXPECT_EQ(texture->pyramid(), nullptr);
   const auto errors = store.errors();

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <optional>
 #include <set>
 
 #include "core/accel/accel.h"
@@ -212,7 +213,7 @@ class RenderJob {
   }
 
   int trace_and_write(const Scene& scene, const OutputPlan& output, const TextureStore& textures) {
-    const RenderResult result = trace(scene);
+    const RenderResult result = trace(scene, textures);
     times_.render = result.seconds;
     for (const std::string& error : textures.errors()) say("whit: " + error);
     if (!textures.errors().empty() && !settings_.keep_going) return kFileError;
@@ -230,7 +231,8 @@ class RenderJob {
     return kDone;
   }
 
-  RenderResult trace(const Scene& scene) const {
+  /// Renders; a texture that cannot be read ends it, for there will be no picture.
+  RenderResult trace(const Scene& scene, const TextureStore& textures) const {
     RenderOptions options;
     options.threads = settings_.threads;
     const Vec2i size = scene.camera().film.resolution;
@@ -251,11 +253,11 @@ class RenderJob {
       if (options.tile_done) viewer.update(result.picture.window, result.picture.rgb);
       return result;
     };
-    if (settings_.quiet) return finish(render(scene, options));
-    Progress progress("rendering");
-    options.progress = [&progress](double share) {
-      progress.update(share);
-      return true;
+    std::optional<Progress> progress;
+    if (!settings_.quiet) progress.emplace("rendering");
+    options.progress = [&](double share) {
+      if (progress) progress->update(share);
+      return settings_.keep_going || !textures.failed();
     };
     return finish(render(scene, options));
   }
