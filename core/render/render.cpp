@@ -132,13 +132,12 @@ class FilmRender {
     const float brightest = static_cast<float>(scene_.film().max_sample_luminance());
     for (int i = 0; i < n; ++i) {
       RGB l = c.radiance[i];
-      if (!std::isfinite(l.x + l.y + l.z)) {
+      const float y = luminance(l), size = std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
+      // A channel may be below zero, where a light's colour is outside of Rec.709; luminance may not. -1e-5 is pbrt's.
+      if (!(y >= -1e-5f && size <= std::numeric_limits<float>::max())) {
         worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
         continue;
       }
-      // Colours outside the gamut have negative components, and pbrt-v3 keeps them; nothing is darker than black.
-      const float y = luminance(l);
-      if (y < 0) l = RGB(0.0f);
       if (y > brightest) l *= brightest / y;
       sums.add(c.film_x[i], c.film_y[i], l * c.ray_weight[i]);
     }

@@ -14,7 +14,7 @@ struct RenderStatistics {
   std::array<double, kStages> stage_seconds{};  ///< Over all workers; zero when stages are not timed.
   int64_t surface_points = 0, footprints = 0;
 
-  int64_t invalid_samples = 0;        ///< NaN or infinite: left out of the picture.
+  int64_t invalid_samples = 0;        ///< NaN, infinite or of negative luminance: left out of the picture.
   Vec2i first_invalid_pixel{-1, -1};  ///< In picture order.
   uint32_t first_invalid_sample = 0;
 
