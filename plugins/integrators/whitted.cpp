@@ -2,6 +2,8 @@
 // and refraction followed to a depth. No interreflection of diffuse or glossy surfaces.
 // Source: Whitted, An Improved Illumination Model for Shaded Display, CACM 23(6), 1980; PBR 3e, section 1.3.5.
 
+#include <algorithm>
+
 #include "core/plugin/integrator.h"
 #include "core/plugin/registry.h"
 
@@ -11,7 +13,7 @@ namespace {
 struct Whitted final : Integrator {
   int maxdepth = 5;
 
-  int max_depth() const override { return maxdepth; }
+  int max_depth() const override { return std::max(maxdepth, 1); }
 
   void shade(RayRound& rays) const override {
     rays.intersect();
@@ -37,7 +39,7 @@ struct Whitted final : Integrator {
 const Register<Whitted> whitted{
     "integrator", "whitted", "Direct light, perfect mirrors and refraction (Whitted 1980).",
     param(&Whitted::maxdepth, "maxdepth", 5, Unit::None,
-          "Rounds of rays: 1 shows direct light only, each further one a specular bounce.", {1, 1e6}),
+          "Rounds of rays: 1 or less shows direct light only, each further one a specular bounce.", {kAny.min, 1e6}),
     param(&Whitted::bounds, "pixelbounds", Unit::Pixels, "Renders only this part, x0 x1 y0 y1; the rest is black.")};
 
 }  // namespace

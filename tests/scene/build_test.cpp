@@ -17,6 +17,16 @@ std::string said_of(const std::string& world) {
   return text;
 }
 
+TEST(Build, MaxdepthMayBeZeroOrLess) {
+  // pbrt's path integrator counts from 0, converters write -1 for no limit: both are one round for pbrt's whitted.
+  for (const char* depth : {"0", "-1"}) {
+    const test::Planned planned("Integrator \"whitted\" \"integer maxdepth\" " + std::string(depth) +
+                                "\nWorldBegin WorldEnd\n");
+    ASSERT_TRUE(planned.bound.integrator.plugin);
+    EXPECT_EQ(planned.bound.integrator.plugin->max_depth(), 1);
+  }
+}
+
 TEST(Build, DegenerateTrianglesOfAllShapesAreSaidOnce) {
   // One triangle with area, and one with two corners alike.
   const std::string mesh =
