@@ -56,7 +56,7 @@ class Perspective final : public ScreenCamera {
   Screen screen_;
 };
 
-constexpr Range kFullAngle{std::numeric_limits<float>::min(), 179.999};
+constexpr Range kFullAngle{kPositive.min, 179.999};
 constexpr Range kHalfAngle{0, 89.9995};
 
 const Register<Perspective> perspective{

@@ -50,7 +50,7 @@ class ProjectionLight final : public PointSource {
   float x_extent_ = 1, y_extent_ = 1;  ///< Of the picture at z = 1, half.
 };
 
-constexpr Range kFullAngle{std::numeric_limits<float>::min(), 179.999};
+constexpr Range kFullAngle{kPositive.min, 179.999};
 
 const Register<ProjectionLight> projection{
     "light",
