@@ -493,8 +493,11 @@ bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<s
     }
     list += (i > 0 ? ", \"" : "\"") + choices[i] + '"';
   }
-  const std::string hint = did_you_mean(v[0], choices);
-  return fail(ctx, ctx.at(p), called(p, ctx) + " is \"" + v[0] + "\", not one of " + list, hint);
+  std::string remedy = did_you_mean(v[0], choices);
+  if (!remedy.empty()) remedy += ' ';
+  ctx.diagnostics->warning(ctx.at(p), called(p, ctx) + " is \"" + v[0] + "\", not one of " + list,
+                           remedy + '"' + choices[static_cast<size_t>(out.index)] + "\" is used");
+  return true;
 }
 
 }  // namespace detail

@@ -180,7 +180,7 @@ DeclaredParam<Class, T> param(T Class::*member, const char* name, Unit unit, con
   return detail::declare(member, name, T{}, unit, doc, range);
 }
 
-/// A string parameter with a fixed list of values, the first being the default.
+/// A string parameter with a fixed list of values, the first being the default, also for a string that is none of them.
 template <class Class>
 DeclaredParam<Class, Choice> choice(Choice Class::*member, const char* name, std::vector<std::string> choices,
                                     const char* doc) {

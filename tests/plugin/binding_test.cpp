@@ -194,9 +194,11 @@ TEST_F(Binding, RangesAndFiniteness) {
         "error@20: \"f\" of everything is not a finite number: nan");
   fails(make<int32_t>(ParamType::Integer, "i", {0}), "error@20: \"i\" of everything must be above 0, not 0");
   fails(numbers(ParamType::Float, "tf", {2}), "error@20: \"tf\" of everything must be between 0 and 1, not 2");
-  fails(strings("mode", {"clmp"}),
-        "error@20: \"mode\" of everything is \"clmp\", not one of \"repeat\", \"black\", \"clamp\" / did you mean "
-        "\"clamp\"?");
+  plugin.mode.index = 0;
+  warns(strings("mode", {"clmp"}),
+        "warning@20: \"mode\" of everything is \"clmp\", not one of \"repeat\", \"black\", \"clamp\" / did you mean "
+        "\"clamp\"? \"repeat\" is used");
+  EXPECT_EQ(plugin.mode.index, 0);
 }
 
 TEST_F(Binding, NumberOfValues) {
