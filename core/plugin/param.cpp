@@ -90,6 +90,17 @@ Count count_values(const Parameter& p, const BindContext& ctx, size_t numbers, s
   return Count::Several;
 }
 
+/// The parameter with its first value of `numbers_each` numbers alone, and a warning. Where a texture may stand pbrt-v3
+/// takes the first of several values.
+Parameter first_value(const Parameter& p, const BindContext& ctx, size_t numbers_each) {
+  ctx.diagnostics->warning(
+      p.values_at, called(p, ctx) + " takes one value, not " + std::to_string(p.numbers().size() / numbers_each),
+      "the first is used, as in pbrt-v3");
+  Parameter first = p;
+  std::get<std::vector<double>>(first.values).resize(numbers_each);
+  return first;
+}
+
 /// Checks a number as it will be used: rounded to Stored (float or double).
 template <class Stored>
 bool check_number(const Parameter& p, const BindContext& ctx, const Range& range, double v, size_t i = 0) {
@@ -357,6 +368,7 @@ struct Kind<Tex<float>> {
   static std::string text(const Tex<float>& v) { return v.is_constant() ? number_text(v.value()) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, Tex<float>& out) {
     if (p.type == ParamType::Texture) return read_texture(p, ctx, out);
+    if (p.numbers().size() > 1) return read(first_value(p, ctx, 1), ctx, range, out);
     float v = out.value();
     const bool ok = read_float(p, ctx, range, v);
     if (ok && p.numbers().size() == 1) out = Tex<float>(v);
@@ -372,7 +384,7 @@ struct Kind<std::optional<Tex<float>>> {
     Tex<float> v;
     const size_t count = p.type == ParamType::Texture ? p.textures().size() : p.numbers().size();
     if (!Kind<Tex<float>>::read(p, ctx, range, v)) return false;
-    if (count == 1) out = v;
+    if (count == 1 || p.type == ParamType::Float) out = v;
     return true;
   }
 };
@@ -399,6 +411,9 @@ struct Kind<Tex<RGB>> {
   static std::string text(const Tex<RGB>& v) { return v.is_constant() ? Kind<RGB>::text(v.value()) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, Tex<RGB>& out) {
     if (p.type == ParamType::Texture) return read_texture(p, ctx, out);
+    const size_t each = p.type == ParamType::Blackbody ? 2 : 3, numbers = p.numbers().size();
+    if (p.type != ParamType::Spectrum && numbers > each && numbers % each == 0)
+      return read(first_value(p, ctx, each), ctx, range, out);
     RGB v = out.value();
     const bool ok = read_colour(p, ctx, range, v);
     if (ok) out = Tex<RGB>(v);

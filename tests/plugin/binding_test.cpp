@@ -208,6 +208,13 @@ TEST_F(Binding, NumberOfValues) {
   warns(numbers(ParamType::Float, "f", {2, 3}),
         "warning@20: \"f\" of everything takes one value, not 2 / the parameter is ignored, as in pbrt-v3");
   EXPECT_EQ(plugin.f, 1.5f);
+  // But its GetFloatTexture and GetSpectrumTexture take the first.
+  warns(numbers(ParamType::Float, "tf", {0.25, 3}),
+        "warning@20: \"tf\" of everything takes one value, not 2 / the first is used, as in pbrt-v3");
+  EXPECT_EQ(plugin.tf.value(), 0.25f);
+  warns(numbers(ParamType::Rgb, "ts", {1, 2, 3, 4, 5, 6}),
+        "warning@20: \"ts\" of everything takes one value, not 2 / the first is used, as in pbrt-v3");
+  EXPECT_EQ(plugin.ts.value(), RGB(1, 2, 3));
 }
 
 TEST_F(Binding, NameAndExactType) {
