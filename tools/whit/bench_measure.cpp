@@ -1,0 +1,159 @@
+#include "tools/whit/bench_measure.h"
+
+#include <tbb/task_arena.h>
+
+#include <chrono>
+#include <numeric>
+#include <random>
+
+#include "core/render/render.h"
+#include "tools/whit/bench_floor.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Json = nlohmann::json;
+
+/// The scene, built for measuring, with the seconds that took; null when it cannot be.
+struct BuiltScene {
+  TextureStore textures;
+  std::unique_ptr<Scene> scene;
+  double seconds = 0;
+};
+
+std::unique_ptr<BuiltScene> build(const SceneDescription& world, const Sources& sources, const BuildOptions& options,
+                                  Diagnostics& diagnostics) {
+  auto built = std::make_unique<BuiltScene>();
+  PlannedScene planned = plan_scene(world, sources, diagnostics);
+  const auto start = Clock::now();
+  built->scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, built->textures, diagnostics);
+  built->seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (!built->scene || diagnostics.has_errors()) return nullptr;
+  return built;
+}
+
+/// Camera samples per second and core over the runs; 0 threads are all. The first run warms caches and is not counted.
+Spread samples_per_core(const Scene& scene, int threads, int runs) {
+  std::vector<double> rates;
+  RenderOptions options;
+  options.threads = threads;
+  for (int run = 0; run <= runs; ++run) {
+    const RenderResult r = render(scene, options);
+    if (run > 0) rates.push_back(static_cast<double>(r.statistics.camera_samples) / r.seconds / r.threads);
+  }
+  return spread_of(rates);
+}
+
+Json rays_per_second(const RenderStatistics& s, double seconds) {
+  const auto rate = [seconds](int64_t n) { return static_cast<double>(n) / seconds; };
+  return {{"camera", rate(s.camera_rays)},
+          {"reflection", rate(s.reflection_rays)},
+          {"refraction", rate(s.refraction_rays)},
+          {"shadow", rate(s.shadow_rays)},
+          {"all", rate(s.rays())}};
+}
+
+Json shares_of(const std::array<double, kStages>& seconds) {
+  double sum = 0;
+  for (const double s : seconds) sum += s;
+  Json shares;
+  for (size_t i = 0; i < kStages; ++i) shares[kStageNames[i]] = seconds[i] / sum;
+  return shares;
+}
+
+/// The share of rays aimed from the camera at points on edges between two triangles that hit nothing up to there.
+double missed_edges(const Scene& scene) {
+  constexpr int kRays = 1 << 17;
+  std::vector<const Mesh*> meshes;
+  for (const SceneShape& shape : scene.shapes) {
+    if (shape.mesh && shape.mesh->indices.size() > 300) meshes.push_back(shape.mesh);
+  }
+  if (meshes.empty() || !scene.instances.empty()) return 0;
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> uniform;
+  std::vector<float> o(3 * kRays), d(3 * kRays), t_max(kRays);
+  std::vector<uint8_t> blocked(kRays);
+  float* const od[] = {&o[0], &o[kRays], &o[2 * kRays], &d[0], &d[kRays], &d[2 * kRays]};
+  const RayLanes rays{kRays, {od[0], od[1], od[2]}, {od[3], od[4], od[5]}, t_max.data()};
+  const Vec3f eye(transform_point(scene.camera_keys.front(), Vec3d(0, 0, 0)));
+  for (int i = 0; i < kRays;) {
+    const Mesh& mesh = *meshes[random() % meshes.size()];
+    const uint32_t* triangle = &mesh.indices[3 * (random() % (mesh.indices.size() / 3))];
+    const Vec3f a = mesh.position(triangle[0]), b = mesh.position(triangle[1]), c = mesh.position(triangle[2]);
+    const Vec3f to = a + (b - a) * uniform(random) - eye;
+    // Only where the surface faces the camera well, so that the edge is not a silhouette.
+    if (std::abs((b - a).cross(c - a).normalized().dot(to.normalized())) < 0.3f) continue;
+    rays.o.set(i, eye), rays.d.set(i, to.normalized());
+    t_max[static_cast<size_t>(i++)] = to.length() * 1.001f;
+  }
+  scene.accel->occluded(rays, blocked.data());
+  return 1 - static_cast<double>(std::accumulate(blocked.begin(), blocked.end(), 0)) / kRays;
+}
+
+/// Samples per pixel at which a scene stays within the limit of camera samples; 0 for the scene's own.
+int fewer_samples(const Scene& scene, double most) {
+  const Vec2i size = scene.camera().film.resolution;
+  const double samples = static_cast<double>(size.x) * size.y * scene.samples_per_pixel;
+  return samples <= most ? 0 : std::max(1, static_cast<int>(scene.samples_per_pixel * most / samples));
+}
+
+Json floor_figures(const Floor& floor) {
+  const char* const names[] = {"camera", "secondary", "shadow"};
+  Json kinds;
+  for (size_t k = 0; k < floor.kinds.size(); ++k) {
+    const FloorOfKind& kind = floor.kinds[k];
+    if (kind.rays == 0) continue;
+    kinds[names[k]] = {{"rays", kind.rays}, {"call", call_name(kind.best_call)}, {"seconds", kind.seconds}};
+  }
+  return kinds;
+}
+
+}  // namespace
+
+Json measure_scene(const std::string& name, const LoadedFile& file, const SceneDescription& world,
+                   const Sources& sources, const BenchSettings& settings, Diagnostics& diagnostics) {
+  BuildOptions options;
+  auto built = build(world, sources, options, diagnostics);
+  if (!built) return nullptr;
+  options.samples_per_pixel = fewer_samples(*built->scene, settings.most_camera_samples);
+  if (options.samples_per_pixel > 0) built = build(world, sources, options, diagnostics);
+  const Scene& scene = *built->scene;
+
+  const Spread one = samples_per_core(scene, 1, settings.runs), all = samples_per_core(scene, 0, settings.runs);
+  RenderOptions timed;
+  timed.threads = 1;
+  timed.time_stages = true;
+  const RenderResult stages = render(scene, timed);
+  const Floor floor = measure_floor(scene, settings.runs);
+
+  options.robust_traversal = false;
+  Diagnostics repeated;
+  const auto fast = build(world, sources, options, repeated);
+  const int cores = tbb::this_task_arena::max_concurrency();
+  const double triangles = static_cast<double>(scene.triangle_count());
+  return {{"name", name},
+          {"camera_samples", stages.statistics.camera_samples},
+          {"samples_per_pixel", scene.samples_per_pixel},
+          {"camera_samples_per_s_per_core", one.median},
+          {"spread", {one.low, one.high}},
+          {"rays_per_s_per_core", rays_per_second(stages.statistics, stages.seconds)},
+          {"floor_ratio", floor.ratio.median},
+          {"floor_ratio_spread", {floor.ratio.low, floor.ratio.high}},
+          {"floor", floor_figures(floor)},
+          {"stages", shares_of(stages.statistics.stage_seconds)},
+          {"threads", cores},
+          {"scaling", all.median * cores / one.median},
+          {"fast_traversal",
+           {{"camera_samples_per_s_per_core", samples_per_core(*fast->scene, 1, settings.runs).median},
+            {"missed_edges", missed_edges(*fast->scene)},
+            {"missed_edges_robust", missed_edges(scene)}}},
+          {"parse_mb_per_s", static_cast<double>(file.parsed.bytes) / 1e6 / std::max(1e-9, file.parse_seconds)},
+          {"build_mtris_per_s", triangles / 1e6 / built->seconds},
+          {"triangles", scene.triangle_count()},
+          {"invalid_samples", stages.statistics.invalid_samples},
+          {"peak_memory_bytes", peak_memory()}};
+}
+
+}  // namespace whit
