@@ -231,15 +231,35 @@ bool is_usable(const Packet& ray, int i) {
   return (o <= kFar) & (d <= kFar) & (sum == sum) & (ray.tfar[i] == ray.tfar[i]);
 }
 
-/// Fills one packet from lanes [first, first + count); lanes beyond count are switched off by `valid`.
-template <class Packet>
+/// Embree's packets of N rays.
+template <int N>
+struct Packets;
+template <>
+struct Packets<4> {
+  using Ray = RTCRay4;
+  using RayHit = RTCRayHit4;
+};
+template <>
+struct Packets<8> {
+  using Ray = RTCRay8;
+  using RayHit = RTCRayHit8;
+};
+template <>
+struct Packets<16> {
+  using Ray = RTCRay16;
+  using RayHit = RTCRayHit16;
+};
+
+/// Fills one packet from lanes [first, first + count). Lanes beyond count and rays that are not usable are switched off
+/// by `valid`, and are such that nothing happens to them should Embree look at them all the same.
+template <int N, class Packet>
 void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* valid) {
   const auto copy = [&](float* to, const float* from) {
     std::memcpy(to, from + first, sizeof(float) * static_cast<size_t>(count));
   };
   copy(ray.org_x, rays.o.x), copy(ray.org_y, rays.o.y), copy(ray.org_z, rays.o.z);
   copy(ray.dir_x, rays.d.x), copy(ray.dir_y, rays.d.y), copy(ray.dir_z, rays.d.z);
-  for (int i = 0; i < kWidth; ++i) {
+  for (int i = 0; i < N; ++i) {
     ray.tnear[i] = 0;
     ray.time[i] = 0;
     ray.tfar[i] = std::numeric_limits<float>::infinity();
@@ -249,7 +269,17 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
   }
   if (rays.t_max) copy(ray.tfar, rays.t_max);
   if (rays.time) copy(ray.time, rays.time);
-  for (int i = 0; i < kWidth; ++i) valid[i] = ((i < count) & is_usable(ray, i)) ? -1 : 0;
+  for (int i = 0; i < N; ++i) {
+    const bool use = (i < count) & is_usable(ray, i);
+    valid[i] = use ? -1 : 0;
+    ray.org_x[i] = use ? ray.org_x[i] : 0.0f;
+    ray.org_y[i] = use ? ray.org_y[i] : 0.0f;
+    ray.org_z[i] = use ? ray.org_z[i] : 0.0f;
+    ray.dir_x[i] = use ? ray.dir_x[i] : 0.0f;
+    ray.dir_y[i] = use ? ray.dir_y[i] : 0.0f;
+    ray.dir_z[i] = use ? ray.dir_z[i] : 1.0f;
+    ray.tfar[i] = use ? ray.tfar[i] : -std::numeric_limits<float>::infinity();
+  }
 }
 
 }  // namespace
@@ -257,6 +287,7 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
 struct Accel::Impl {
   RTCDevice device = nullptr;
   bool robust = true;
+  int width = 4;  ///< Of the largest packets that Embree traces whole on this processor; it takes larger ones apart.
   RayRecord* record = nullptr;
   struct Group {
     RTCScene scene = nullptr;
@@ -268,6 +299,11 @@ struct Accel::Impl {
   std::vector<std::unique_ptr<GeometryUser>> users;
   std::atomic<ssize_t> bytes{0};
   std::string error;
+
+  template <int N>
+  void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
+  template <int N>
+  void occluded(const RayLanes& rays, uint8_t* blocked) const;
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
   RTCScene new_scene() const {
@@ -300,7 +336,10 @@ struct Accel::Impl {
 
 Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->robust = options.robust;
-  impl_->device = rtcNewDevice(nullptr);
+  impl_->device = rtcNewDevice(options.embree.empty() ? nullptr : options.embree.c_str());
+  const auto can = [this](RTCDeviceProperty p) { return rtcGetDeviceProperty(impl_->device, p) != 0; };
+  if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
+  if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) impl_->width = 16;
   rtcSetDeviceErrorFunction(
       impl_->device,
       [](void* self, RTCError, const char* text) { static_cast<Impl*>(self)->error = text ? text : "unknown"; },
@@ -382,27 +421,26 @@ std::string Accel::build() {
   return fmt::format("the ray tracer could not be built: {}", impl_->error.empty() ? "unknown error" : impl_->error);
 }
 
-void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
-  if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
-  const RTCScene scene = impl_->groups[kWorld].scene;
-  const int world_first = impl_->groups[kWorld].first_shape;
-  const int world_shapes = impl_->groups[kWorld].shape_count;
+template <int N>
+void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+  const RTCScene scene = groups[kWorld].scene;
+  const int world_first = groups[kWorld].first_shape, world_shapes = groups[kWorld].shape_count;
   EmbreeQuery query(coherent);
-  alignas(64) RTCRayHit16 packet;
-  alignas(64) int valid[kWidth];
-  for (int first = 0; first < rays.n; first += kWidth) {
-    const int count = std::min(kWidth, rays.n - first);
-    load_packet(rays, first, count, packet.ray, valid);
-    for (int i = 0; i < kWidth; ++i) {
+  alignas(64) typename Packets<N>::RayHit packet;
+  alignas(64) int valid[N];
+  for (int first = 0; first < rays.n; first += N) {
+    const int count = std::min(N, rays.n - first);
+    load_packet<N>(rays, first, count, packet.ray, valid);
+    for (int i = 0; i < N; ++i) {
       packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
     query.trace(valid, scene, packet);
-    const size_t bytes = sizeof(float) * static_cast<size_t>(count);
-    std::memcpy(hits.t + first, packet.ray.tfar, bytes);
-    std::memcpy(hits.u + first, packet.hit.u, bytes);
-    std::memcpy(hits.v + first, packet.hit.v, bytes);
-    std::memcpy(hits.prim + first, packet.hit.primID, bytes);
+    const size_t size = sizeof(float) * static_cast<size_t>(count);
+    std::memcpy(hits.t + first, packet.ray.tfar, size);
+    std::memcpy(hits.u + first, packet.hit.u, size);
+    std::memcpy(hits.v + first, packet.hit.v, size);
+    std::memcpy(hits.prim + first, packet.hit.primID, size);
     for (int i = 0; i < count; ++i) {
       if (!valid[i]) hits.t[first + i] = std::numeric_limits<float>::quiet_NaN();
       const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
@@ -412,7 +450,17 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
       hits.shape[first + i] = hit ? static_cast<int32_t>(geometry) + world_first : -1;
     }
   }
+}
+
+void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+  if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
+  switch (impl_->width) {
+    case 16: impl_->intersect<16>(rays, hits, coherent); break;
+    case 8: impl_->intersect<8>(rays, hits, coherent); break;
+    default: impl_->intersect<4>(rays, hits, coherent); break;
+  }
   if (impl_->instance_group.empty()) return;
+  const int world_first = impl_->groups[kWorld].first_shape;
   for (int i = 0; i < rays.n; ++i) {
     if (hits.instance[i] < 0) continue;
     const int group = impl_->instance_group[static_cast<size_t>(hits.instance[i])];
@@ -420,18 +468,26 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
   }
 }
 
-void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
-  if (impl_->record) impl_->record->add(RayKind::Shadow, rays);
-  const RTCScene scene = impl_->groups[kWorld].scene;
+template <int N>
+void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
   EmbreeQuery query(false);
-  alignas(64) RTCRay16 packet;
-  alignas(64) int valid[kWidth];
-  for (int first = 0; first < rays.n; first += kWidth) {
-    const int count = std::min(kWidth, rays.n - first);
-    load_packet(rays, first, count, packet, valid);
-    query.trace(valid, scene, packet);
-    for (int i = 0; i < count; ++i) blocked[first + i] = packet.tfar[i] < 0;
+  alignas(64) typename Packets<N>::Ray packet;
+  alignas(64) int valid[N];
+  for (int first = 0; first < rays.n; first += N) {
+    const int count = std::min(N, rays.n - first);
+    load_packet<N>(rays, first, count, packet, valid);
+    query.trace(valid, groups[kWorld].scene, packet);
+    for (int i = 0; i < count; ++i) blocked[first + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
+  }
+}
+
+void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
+  if (impl_->record) impl_->record->add(RayKind::Shadow, rays);
+  switch (impl_->width) {
+    case 16: impl_->occluded<16>(rays, blocked); break;
+    case 8: impl_->occluded<8>(rays, blocked); break;
+    default: impl_->occluded<4>(rays, blocked); break;
   }
 }
 

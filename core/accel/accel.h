@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/accel/curve.h"
@@ -56,7 +57,8 @@ struct Affine {
 };
 
 struct AccelOptions {
-  bool robust = true;  ///< Watertight traversal.
+  bool robust = true;    ///< Watertight traversal.
+  std::string embree{};  ///< Configuration of Embree's device, e.g. "isa=avx2"; tests use it.
 };
 
 class RayRecord;

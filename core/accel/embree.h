@@ -22,9 +22,11 @@ class EmbreeQuery {
     occluded_.flags = flags;
   }
   void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &rays, &intersect_); }
   void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &rays, &intersect_); }
   void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &rays, &intersect_); }
   void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
+  void trace(const int* valid, RTCScene scene, RTCRay4& rays) { rtcOccluded4(valid, scene, &rays, &occluded_); }
   void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays, &occluded_); }
   void trace(const int* valid, RTCScene scene, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays, &occluded_); }
 
@@ -37,9 +39,11 @@ class EmbreeQuery {
     context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
   void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
+  void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &context_, &rays); }
   void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
+  void trace(const int* valid, RTCScene scene, RTCRay4& rays) { rtcOccluded4(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
 
