@@ -291,13 +291,23 @@ void SceneBuilder::leave_top_block() {
   blocks_.pop_back();
 }
 
-/// Closes the innermost block of a kind and every one inside it that was left open. Only TransformBegin may be
-/// left open by AttributeEnd, and nothing by TransformEnd, so that one slip does not undo an outer block.
+/// Makes a block the innermost one. The transforms to return to stay where they are: pbrt has a stack of its own for
+/// them, so that a TransformBegin and another block may cross.
+void SceneBuilder::bring_to_top(size_t block) {
+  for (; block + 1 < blocks_.size(); ++block) {
+    OpenBlock &below = blocks_[block], &above = blocks_[block + 1];
+    std::swap(below, above);
+    std::swap(below.state.ctm, above.state.ctm);
+    std::swap(below.state.start_active, above.state.start_active);
+    std::swap(below.state.end_active, above.state.end_active);
+  }
+}
+
+/// Closes the innermost block of a kind. ObjectEnd also closes what is open inside; AttributeEnd leaves an object alone.
 void SceneBuilder::close_block(BlockKind kind, const Statement& s) {
   const std::string end(s.row->name);
   const auto found = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const OpenBlock& block) {
-    return block.kind == kind || kind == BlockKind::Transform ||
-           (kind == BlockKind::Attribute && block.kind == BlockKind::Object);
+    return block.kind == kind || (kind == BlockKind::Attribute && block.kind == BlockKind::Object);
   });
   if (found == blocks_.rend() || found->kind != kind) {
     const std::string begin = end.substr(0, end.size() - 3) + "Begin";
@@ -306,8 +316,12 @@ void SceneBuilder::close_block(BlockKind kind, const Statement& s) {
         blocks_.empty() ? "" : "the innermost open block began at " + sources_.location(blocks_.back().where));
     return;
   }
-  const auto remaining = static_cast<size_t>(blocks_.rend() - found);
-  for (; blocks_.size() > remaining; leave_top_block()) warn_unclosed(blocks_.back(), end);
+  const auto index = static_cast<size_t>(blocks_.rend() - found) - 1;
+  if (kind == BlockKind::Object) {
+    for (; blocks_.size() > index + 1; leave_top_block()) warn_unclosed(blocks_.back(), end);
+  } else {
+    bring_to_top(index);
+  }
   leave_top_block();
 }
 

@@ -115,6 +115,7 @@ class SceneBuilder {
   void add_material(Entity made, std::string name);
   void define(Names& names, const std::string& name, int index);
   void open_block(BlockKind kind, const Statement& s, bool ignored = false);
+  void bring_to_top(size_t block);
   void close_block(BlockKind kind, const Statement& s);
   void warn_unclosed(const OpenBlock& block, const std::string& before);
   void leave_top_block();

@@ -149,6 +149,32 @@ TEST(Scenes, Media) {
   EXPECT_EQ(parsed.scene().media_uses.size(), 2u);
 }
 
+TEST(Scenes, TransformBlocksMayCrossOthers) {
+  // pbrt-v3 has a stack of transforms and one of the rest: an end takes from them what lies on top.
+  const auto x_of = [](const SceneDescription& scene, size_t shape) {
+    const auto transform = static_cast<size_t>(scene.shapes.at(shape).transform);
+    return transform_point(scene.transforms.at(transform).start, {0, 0, 0}).x;
+  };
+  const std::string shape = "Shape \"s\"\n";
+  const Parsed transform_first(
+      in_world("Translate 1 0 0 TransformBegin Translate 10 0 0 AttributeBegin Material \"glass\" Translate 100 0 0\n"
+               "TransformEnd " +
+               shape + "AttributeEnd " + shape));
+  expect_clean(transform_first);
+  EXPECT_EQ(x_of(transform_first.scene(), 0), 11);
+  EXPECT_EQ(transform_first.scene().shapes[0].material, 1);
+  EXPECT_EQ(x_of(transform_first.scene(), 1), 1);
+  EXPECT_EQ(transform_first.scene().shapes[1].material, 0);
+  const Parsed attribute_first(
+      in_world("Translate 1 0 0 AttributeBegin Material \"glass\" Translate 10 0 0 TransformBegin Translate 100 0 0\n"
+               "AttributeEnd " +
+               shape + "TransformEnd " + shape));
+  expect_clean(attribute_first);
+  EXPECT_EQ(x_of(attribute_first.scene(), 0), 11);
+  EXPECT_EQ(attribute_first.scene().shapes[0].material, 0);
+  EXPECT_EQ(x_of(attribute_first.scene(), 1), 1);
+}
+
 TEST(Scenes, AreaLightInsideAnObject) {
   const Parsed parsed(in_world("ObjectBegin \"o\" AreaLightSource \"diffuse\"\nShape \"s\" Shape \"s\"\nObjectEnd"));
   expect_only(parsed, Severity::Warning, 3, 1, "area light inside an object", "lights nothing");

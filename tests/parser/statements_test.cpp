@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Statements, UnclosedBlocksAreWarnings) {
   expect_only(Parsed(in_world("  AttributeBegin")), Severity::Warning, 2, 3, "never closed", "before WorldEnd");
   expect_only(Parsed(in_world("AttributeBegin\nTransformBegin\nAttributeEnd")), Severity::Warning, 3, 1,
-              "TransformBegin is never closed", "before AttributeEnd");
+              "TransformBegin is never closed", "before WorldEnd");
   expect_only(Parsed(in_world("ObjectBegin \"o\"\nAttributeBegin\nObjectEnd\nShape \"s\"")), Severity::Warning, 3, 1,
               "AttributeBegin is never closed", "before ObjectEnd");
 }
