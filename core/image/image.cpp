@@ -61,4 +61,6 @@ Result<ImageInfo> probe_image(const std::string& path) { return read_file(path, 
 
 Result<Image> read_image(const std::string& path) { return read_file(path, &Oiio::read); }
 
+Result<ByteImage> read_byte_image(const std::string& path) { return read_file(path, &Oiio::read_bytes); }
+
 }  // namespace whit

@@ -42,13 +42,16 @@ struct ImageInfo {
 };
 
 /// A picture in memory.
-struct Image : ImageInfo {
-  std::vector<float> pixels;  ///< height x width x channels, row by row, top row first, channels innermost.
+template <class Number>
+struct PixelArray : ImageInfo {
+  std::vector<Number> pixels;  ///< height x width x channels, row by row, top row first, channels innermost.
 
-  const float* pixel(int column, int row) const {
+  const Number* pixel(int column, int row) const {
     return pixels.data() + (static_cast<size_t>(row) * width + column) * channels;
   }
 };
+using Image = PixelArray<float>;
+using ByteImage = PixelArray<uint8_t>;
 
 /// Reads the header only: cheap, nothing is decoded. The error names the file and the reason.
 Result<ImageInfo> probe_image(const std::string& path);
@@ -57,5 +60,8 @@ Result<ImageInfo> probe_image(const std::string& path);
 /// not the extension). All channels, raw: no gamma decoding, no premultiplication, no tone mapping. A header
 /// that claims far more pixels than the file can hold is an error. The error names the file and the reason.
 Result<Image> read_image(const std::string& path);
+
+/// The same for a picture of 8-bit numbers (SampleFormat::UInt8): the file's bytes, in a quarter of the memory.
+Result<ByteImage> read_byte_image(const std::string& path);
 
 }  // namespace whit

@@ -9,93 +9,111 @@
 namespace whit {
 namespace {
 
-// The coarser level: each texel the mean of four. A side that is 1 already takes texel 1 from outside: the same
-// texel again when the texture repeats or clamps, nothing when it is black there (as in pbrt-v3).
-Texels halve(const Texels& fine, WrapMode wrap) {
-  Texels out{std::max(1, fine.width / 2), std::max(1, fine.height / 2), fine.channels, {}};
-  out.values.resize(static_cast<size_t>(out.width) * out.height * out.channels);
-  const auto fetch = [&](int s, int t, int c) {
-    if (s >= fine.width || t >= fine.height) {
-      if (wrap == WrapMode::Black) return 0.0f;
-      s = std::min(s, fine.width - 1);
-      t = std::min(t, fine.height - 1);
-    }
-    return fine.values[(static_cast<size_t>(t) * fine.width + s) * fine.channels + c];
-  };
+// The coarser level of one whose numbers are value(0), value(1), ...: each texel the mean of four. A side that is 1
+// already takes texel 1 from outside: the same texel again when the texture repeats or clamps, nothing when it is
+// black there (as in pbrt-v3).
+template <class Value>
+Texels halve(int width, int height, int channels, WrapMode wrap, const Value& value) {
+  Texels out{std::max(1, width / 2), std::max(1, height / 2), channels, {}};
+  out.values.resize(static_cast<size_t>(out.width) * out.height * channels);
+  const size_t texel = static_cast<size_t>(channels), row = texel * width;
+  const size_t right = width > 1 ? texel : 0, below = height > 1 ? row : 0;
+  const bool has_right = right > 0 || wrap != WrapMode::Black, has_below = below > 0 || wrap != WrapMode::Black;
   tbb::parallel_for(0, out.height, [&](int t) {
-    float* texel = out.values.data() + static_cast<size_t>(t) * out.width * out.channels;
-    for (int s = 0; s < out.width; ++s)
-      for (int c = 0; c < out.channels; ++c)
-        *texel++ = 0.25f * (fetch(2 * s, 2 * t, c) + fetch(2 * s + 1, 2 * t, c) + fetch(2 * s, 2 * t + 1, c) +
-                            fetch(2 * s + 1, 2 * t + 1, c));
+    float* to = out.values.data() + static_cast<size_t>(t) * out.width * texel;
+    for (int s = 0; s < out.width; ++s) {
+      const size_t first = 2 * t * row + 2 * s * texel;
+      for (size_t i = first; i < first + texel; ++i) {
+        float sum = value(i);
+        if (has_right) sum += value(i + right);
+        if (has_below) sum += value(i + below);
+        if (has_right && has_below) sum += value(i + right + below);
+        *to++ = 0.25f * sum;
+      }
+    }
   });
   return out;
+}
+
+Texels halve(const Texels& fine, WrapMode wrap) {
+  return halve(fine.width, fine.height, fine.channels, wrap, [v = fine.values.data()](size_t i) { return v[i]; });
 }
 
 bool fits_half(const Texels& texels) {
   return std::all_of(texels.values.begin(), texels.values.end(), [](float v) { return std::abs(v) <= 65504.0f; });
 }
 
-// Level 0 in its own bytes: the picture's colour channels, flipped as asked for.
-std::vector<uint8_t> image_bytes(const Image& image, int channels, bool flip) {
+// The picture's colour channels, flipped as asked for.
+std::vector<uint8_t> colour_bytes(const ByteImage& image, int channels, bool flip) {
   const std::vector<int> rgb = image.rgb_channels();
-  std::vector<uint8_t> bytes;
-  bytes.reserve(static_cast<size_t>(image.width) * image.height * channels);
+  std::vector<uint8_t> bytes(static_cast<size_t>(image.width) * image.height * channels);
+  uint8_t* to = bytes.data();
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      const float* p = image.pixel(x, flip ? image.height - 1 - y : y);
-      for (int c = 0; c < channels; ++c) bytes.push_back(static_cast<uint8_t>(std::lround(255 * p[rgb[c]])));
+      const uint8_t* p = image.pixel(x, flip ? image.height - 1 - y : y);
+      for (int c = 0; c < channels; ++c) *to++ = p[rgb[c]];
     }
   return bytes;
 }
 
 }  // namespace
 
-// The steps of the constructor, with access to the private level type.
-struct MipMapBuilder {
-  static MipMap::Level store(const Texels& texels, bool as_half) {
-    MipMap::Level level;
-    level.width = texels.width;
-    level.height = texels.height;
-    level.storage = as_half ? MipMap::Storage::Halves : MipMap::Storage::Floats;
-    if (as_half) level.halves.assign(texels.values.begin(), texels.values.end());
-    else level.floats = texels.values;
-    return level;
-  }
-
-  // Swaps the halves of level 0 for the picture's bytes and the table that decodes them.
-  static void use_bytes(MipMap& map, const Image& image, const MipMapOptions& options) {
-    MipMap::Level& level = map.levels_[0];
-    level.storage = MipMap::Storage::Bytes;
-    level.halves = {};
-    level.bytes = image_bytes(image, map.channels_, options.flip);
-    for (int i = 0; i < 256; ++i) {
-      const float v = static_cast<float>(i) / 255;
-      map.byte_values_[i] = options.scale * (options.gamma ? srgb_decode(v) : v);
-    }
-  }
-};
-
-MipMap::MipMap(const Image& image, const MipMapOptions& options) : wrap_(options.wrap) {
+MipMap::MipMap(Image image, const MipMapOptions& options) : wrap_(options.wrap) {
   // Halves store the unscaled values, so that no scale can drive them out of range. A negative scale meets
   // the clamp of the resampling, so there the scale has to come first.
-  bool as_half = image.format != SampleFormat::Float && options.scale >= 0;
+  const bool as_half = image.format != SampleFormat::Float && options.scale >= 0;
   Texels texels = make_texels(image, options.single, options.gamma, as_half ? 1 : options.scale, options.flip);
+  image.pixels = {};
+  add_levels(resample_to_power_of_two(std::move(texels), wrap_), as_half, options.scale);
+}
+
+MipMap::MipMap(ByteImage image, const MipMapOptions& options) : wrap_(options.wrap) {
+  const bool as_half = options.scale >= 0;
   const bool grey = image.rgb_channels()[0] == image.rgb_channels()[1];
-  const bool own_bytes = as_half && image.format == SampleFormat::UInt8 && (grey || !options.single) &&
-                         is_power_of_two(image.width) && is_power_of_two(image.height);
-  texels = resample_to_power_of_two(std::move(texels), options.wrap);
+  if (as_half && (grey || !options.single) && is_power_of_two(image.width) && is_power_of_two(image.height)) {
+    channels_ = grey ? 1 : 3;
+    add_byte_levels(std::move(image), options);
+    return;
+  }
+  Texels texels = make_texels(image, options.single, options.gamma, as_half ? 1 : options.scale, options.flip);
+  image.pixels = {};
+  add_levels(resample_to_power_of_two(std::move(texels), wrap_), as_half, options.scale);
+}
+
+// The picture's own bytes, with the table that decodes them, and what is coarser in halves.
+void MipMap::add_byte_levels(ByteImage image, const MipMapOptions& options) {
+  Level& finest = levels_.emplace_back();
+  finest.width = image.width;
+  finest.height = image.height;
+  finest.storage = Storage::Bytes;
+  finest.bytes = colour_bytes(image, channels_, options.flip);
+  image.pixels = {};
+  const std::array<float, 256> values = byte_values(options.gamma);
+  std::transform(values.begin(), values.end(), byte_values_.begin(), [&](float v) { return options.scale * v; });
+  if (finest.width == 1 && finest.height == 1) return;
+  const auto value = [&values, bytes = finest.bytes.data()](size_t i) { return values[bytes[i]]; };
+  add_levels(halve(finest.width, finest.height, channels_, wrap_, value), true, options.scale);
+}
+
+// `texels` and all that are coarser, as halves where wanted and possible: then the scale is still to be applied.
+void MipMap::add_levels(Texels texels, bool as_half, float scale) {
   if (as_half && !fits_half(texels)) {
     as_half = false;
-    for (float& v : texels.values) v *= options.scale;
+    for (float& v : texels.values) v *= scale;
   }
   channels_ = texels.channels;
-  gain_ = as_half ? options.scale : 1;
+  gain_ = as_half ? scale : 1;
   for (;;) {
-    levels_.push_back(MipMapBuilder::store(texels, as_half));
-    if (levels_.size() == 1 && own_bytes) MipMapBuilder::use_bytes(*this, image, options);
-    if (texels.width == 1 && texels.height == 1) break;
-    texels = halve(texels, options.wrap);
+    Level& level = levels_.emplace_back();
+    level.width = texels.width;
+    level.height = texels.height;
+    level.storage = as_half ? Storage::Halves : Storage::Floats;
+    const bool last = texels.width == 1 && texels.height == 1;
+    Texels coarser = last ? Texels{} : halve(texels, wrap_);
+    if (as_half) level.halves.assign(texels.values.begin(), texels.values.end());
+    else level.floats = std::move(texels.values);
+    if (last) return;
+    texels = std::move(coarser);
   }
 }
 

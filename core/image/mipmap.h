@@ -56,7 +56,8 @@ struct LookupPoints {
 /// 16-bit and half pictures are half (relative error below 0.05 %); float pictures are float.
 class MipMap {
  public:
-  MipMap(const Image& image, const MipMapOptions& options);
+  MipMap(Image image, const MipMapOptions& options);
+  MipMap(ByteImage image, const MipMapOptions& options);
 
   int channels() const { return channels_; }  ///< 1 or 3.
   int level_count() const { return static_cast<int>(levels_.size()); }
@@ -84,8 +85,9 @@ class MipMap {
   struct Ellipse;
   template <int C, WrapMode W>
   class Sampler;
-  friend struct MipMapBuilder;
 
+  void add_byte_levels(ByteImage image, const MipMapOptions& options);
+  void add_levels(Texels texels, bool as_half, float scale);
   template <int C, class F>
   void with_sampler(const F& f) const;
 

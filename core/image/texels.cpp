@@ -68,9 +68,42 @@ void resample_line(const float* in, size_t in_step, float* out, size_t out_step,
     }
 }
 
+// The channels that make the texels, each number taken through `value`; where they are weighed into a luminance, which
+// is of undecoded numbers, through `raw` before that and `decode` after.
+template <class Number, class Value, class Raw, class Decode>
+Texels select(const PixelArray<Number>& image, bool single, bool flip, const Value& value, const Raw& raw,
+              const Decode& decode) {
+  const std::vector<int> rgb = image.rgb_channels();
+  const bool grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+  Texels out{image.width, image.height, single || grey ? 1 : 3, {}};
+  out.values.resize(static_cast<size_t>(out.width) * out.height * out.channels);
+  tbb::parallel_for(0, image.height, [&](int y) {
+    float* texel = out.values.data() + static_cast<size_t>(y) * out.width * out.channels;
+    for (int x = 0; x < image.width; ++x) {
+      const Number* p = image.pixel(x, flip ? image.height - 1 - y : y);
+      if (grey) *texel++ = value(p[rgb[0]]);
+      else if (single) *texel++ = decode(luminance(RGB(raw(p[rgb[0]]), raw(p[rgb[1]]), raw(p[rgb[2]]))));
+      else
+        for (int c : rgb) *texel++ = value(p[c]);
+    }
+  });
+  return out;
+}
+
+float byte_value(uint8_t v) { return static_cast<float>(v) / 255; }
+
 }  // namespace
 
 float srgb_decode(float v) { return v <= 0.04045f ? v * (1 / 12.92f) : std::pow((v + 0.055f) * (1 / 1.055f), 2.4f); }
+
+std::array<float, 256> byte_values(bool gamma) {
+  std::array<float, 256> values;
+  for (int i = 0; i < 256; ++i) {
+    const float v = byte_value(static_cast<uint8_t>(i));
+    values[i] = gamma ? srgb_decode(v) : v;
+  }
+  return values;
+}
 
 bool default_gamma(const std::string& path) {
   std::string e = std::filesystem::path(path).extension().string();
@@ -79,22 +112,17 @@ bool default_gamma(const std::string& path) {
 }
 
 Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip) {
-  const std::vector<int> rgb = image.rgb_channels();
-  const bool grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-  Texels out{image.width, image.height, single || grey ? 1 : 3, {}};
-  out.values.resize(static_cast<size_t>(out.width) * out.height * out.channels);
-  const auto convert = [&](float v) { return scale * (gamma ? srgb_decode(v) : v); };
-  tbb::parallel_for(0, image.height, [&](int y) {
-    float* texel = out.values.data() + static_cast<size_t>(y) * out.width * out.channels;
-    for (int x = 0; x < image.width; ++x) {
-      const float* p = image.pixel(x, flip ? image.height - 1 - y : y);
-      if (grey) *texel++ = convert(p[rgb[0]]);
-      else if (single) *texel++ = convert(luminance(RGB(p[rgb[0]], p[rgb[1]], p[rgb[2]])));
-      else
-        for (int c : rgb) *texel++ = convert(p[c]);
-    }
-  });
-  return out;
+  const auto decode = [=](float v) { return scale * (gamma ? srgb_decode(v) : v); };
+  return select(
+      image, single, flip, decode, [](float v) { return v; }, decode);
+}
+
+Texels make_texels(const ByteImage& image, bool single, bool gamma, float scale, bool flip) {
+  std::array<float, 256> values = byte_values(gamma);
+  for (float& v : values) v *= scale;
+  return select(
+      image, single, flip, [&](uint8_t v) { return values[v]; }, byte_value,
+      [=](float v) { return scale * (gamma ? srgb_decode(v) : v); });
 }
 
 Texels resample_to_power_of_two(Texels in, WrapMode wrap) {

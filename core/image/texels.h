@@ -2,6 +2,7 @@
 // that MIP maps need. The order of operations is pbrt-v3's.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ enum class WrapMode : uint8_t { Repeat, Black, Clamp };
 
 /// The linear value of an sRGB-encoded one: v / 12.92 up to 0.04045, else ((v + 0.055) / 1.055)^2.4. IEC 61966-2-1.
 float srgb_decode(float v);
+
+/// The values that the bytes 0 to 255 of a picture stand for: 0 to 1, sRGB decoded if `gamma`.
+std::array<float, 256> byte_values(bool gamma);
 
 /// pbrt-v3's default for "gamma": true for .png and .tga (any case), whose values are taken as sRGB.
 bool default_gamma(const std::string& path);
@@ -30,6 +34,7 @@ struct Texels {
 /// or one when the picture is grey. Then sRGB decoding if `gamma`, then times `scale`. `flip` puts the bottom
 /// row first, so that t = 0 is the bottom (pbrt's imagemap; its lights do not flip). Alpha is ignored.
 Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip);
+Texels make_texels(const ByteImage& image, bool single, bool gamma, float scale, bool flip);
 
 /// Enlarges both sides to the next power of two with a Lanczos filter (radius 2, tau 2, four normalised taps),
 /// first along s, then along t, the result clamped to >= 0. Texels that are powers of two come back as they are.

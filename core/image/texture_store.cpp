@@ -10,6 +10,24 @@
 #include "core/base/vec.h"
 
 namespace whit {
+namespace {
+
+template <class Picture>
+MipMap* make_pyramid(Result<Picture> image, const MipMapOptions& options, std::string& error) {
+  error = image.error;
+  return image.ok() ? new MipMap(std::move(image.value), options) : nullptr;
+}
+
+// The pyramid of a file, or null and why there is none.
+MipMap* read_pyramid(const std::string& path, const MipMapOptions& options, std::string& error) {
+  const Result<ImageInfo> info = probe_image(path);
+  error = info.error;
+  if (!info.ok()) return nullptr;
+  if (info.value.format == SampleFormat::UInt8) return make_pyramid(read_byte_image(path), options, error);
+  return make_pyramid(read_image(path), options, error);
+}
+
+}  // namespace
 
 // Bytes of all pyramids alive, also of those dropped but still in use; outlives the store if a pyramid does.
 struct TextureStore::Memory {
@@ -132,17 +150,14 @@ std::shared_ptr<const MipMap> TextureStore::decode(ImageTexture::Source& source)
   const TextureSpec& spec = source.spec;
   const MipMapOptions options{spec.kind == TextureKind::Float, spec.wrap, spec.gamma, spec.scale, spec.flip};
   try {
-    const Result<Image> image = read_image(spec.path);
-    if (image.ok()) {
-      MipMap* made = tbb::this_task_arena::isolate([&] { return new MipMap(image.value, options); });
+    MipMap* made = tbb::this_task_arena::isolate([&] { return read_pyramid(spec.path, options, source.error); });
+    if (made) {
       memory_->add(made->bytes());
       source.pyramid = {made, [memory = memory_](const MipMap* map) {
                           memory->bytes -= map->bytes();
                           delete map;
                         }};
       ++decodes_;
-    } else {
-      source.error = image.error;
     }
   } catch (const std::exception& e) {
     source.error = fmt::format("cannot decode image \"{}\": {}", spec.path, e.what());

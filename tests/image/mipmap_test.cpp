@@ -22,6 +22,15 @@ Image picture(int width, int height, int channels, SampleFormat format = SampleF
   return image;
 }
 
+// The same picture as 8-bit numbers.
+ByteImage bytes_of(const Image& image) {
+  ByteImage bytes;
+  static_cast<ImageInfo&>(bytes) = image;
+  bytes.format = SampleFormat::UInt8;
+  for (const float v : image.pixels) bytes.pixels.push_back(static_cast<uint8_t>(std::lround(255 * v)));
+  return bytes;
+}
+
 // One channel, powers of two: the pyramid and the filters, straight from the book, in double precision.
 struct Reference {
   struct Level {
@@ -212,9 +221,10 @@ TEST(MipMap, lookup_width_is_trilinear) {
 
 TEST(MipMap, a_batch_of_n_is_n_batches_of_one) {
   const Points points(500);
-  for (const SampleFormat format : {SampleFormat::UInt8, SampleFormat::Half, SampleFormat::Float})
+  const Image image = picture(32, 16, 3), halves = picture(32, 16, 3, SampleFormat::Half);
+  const MipMapOptions options{.gamma = true};
+  for (const MipMap& map : {MipMap(image, options), MipMap(halves, options), MipMap(bytes_of(image), options)})
     for (const bool trilinear : {false, true}) {
-      const MipMap map(picture(32, 16, 3, format), {.gamma = true});
       const auto all = look(map, points.view(), {trilinear, 8});
       for (size_t i = 0; i < all.size(); ++i) ASSERT_EQ(look(map, points.view(i, 1), {trilinear, 8})[0], all[i]) << i;
     }
@@ -222,22 +232,21 @@ TEST(MipMap, a_batch_of_n_is_n_batches_of_one) {
 
 TEST(MipMap, compact_storage_stays_within_a_thousandth) {
   const Points points(3000);
-  for (const auto& [width, height] : {std::pair{32, 32}, {30, 20}})
-    for (const bool single : {false, true}) {
-      const Image bytes = picture(width, height, 3, SampleFormat::UInt8);
-      Image floats = bytes;
-      floats.format = SampleFormat::Float;
-      const MipMapOptions options{.single = single, .gamma = true, .scale = 2.5f};
-      const MipMap small(bytes, options), large(floats, options);
-      EXPECT_LT(small.bytes(), large.bytes());
-      const auto a = look(small, points.view(), {}), b = look(large, points.view(), {});
-      for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-3f * b[i]) << i;
-      // Bilinear at level 0 is exact where the bytes are kept.
-      if (width == 32 && !single) {
-        const LookupPoints fine{100, points.s.data(), points.t.data()};
-        EXPECT_EQ(look(small, fine, {}), look(large, fine, {}));
+  for (const auto& [width, height] : {std::pair{32, 32}, {30, 20}, {1, 16}})
+    for (const bool single : {false, true})
+      for (const WrapMode wrap : kWraps) {
+        const Image floats = picture(width, height, 3);
+        const MipMapOptions options{.single = single, .wrap = wrap, .gamma = true, .scale = 2.5f};
+        const MipMap small(bytes_of(floats), options), large(floats, options);
+        EXPECT_LT(small.bytes(), large.bytes());
+        const auto a = look(small, points.view(), {}), b = look(large, points.view(), {});
+        for (size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], 1e-3f * b[i]) << i;
+        // Bilinear at level 0 is exact where the bytes are kept.
+        if (width == 32 && !single) {
+          const LookupPoints fine{100, points.s.data(), points.t.data()};
+          EXPECT_EQ(look(small, fine, {}), look(large, fine, {}));
+        }
       }
-    }
 }
 
 TEST(MipMap, a_scale_cannot_overflow_halves) {

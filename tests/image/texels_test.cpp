@@ -54,6 +54,18 @@ TEST(Texels, grey_pictures_stay_grey_and_alpha_is_left_out) {
   EXPECT_EQ(t.values, (std::vector<float>{0.5f, 0.25f}));
 }
 
+TEST(Texels, bytes_give_the_bits_that_their_quotients_give) {
+  ByteImage bytes;
+  bytes.width = 16, bytes.height = 16, bytes.channels = 3, bytes.channel_names = {"R", "G", "B"};
+  for (int i = 0; i < 3 * 256; ++i) bytes.pixels.push_back(static_cast<uint8_t>(i * 89));  // every byte in each channel
+  Image floats;
+  static_cast<ImageInfo&>(floats) = bytes;
+  for (const uint8_t v : bytes.pixels) floats.pixels.push_back(static_cast<float>(v) / 255);
+  for (const bool single : {false, true})
+    for (const bool gamma : {false, true})
+      EXPECT_EQ(make_texels(bytes, single, gamma, 3, true).values, make_texels(floats, single, gamma, 3, true).values);
+}
+
 TEST(Resample, powers_of_two_are_untouched) {
   const Texels in{2, 1, 1, {-3, 5}};
   EXPECT_EQ(resample_to_power_of_two(in, WrapMode::Repeat).values, in.values);

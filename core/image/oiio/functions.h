@@ -7,6 +7,7 @@ namespace whit {
 
 ImageInfo oiio_probe(const std::string& path);
 Image oiio_read(const std::string& path);
+ByteImage oiio_read_bytes(const std::string& path);
 std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 
 }  // namespace whit

@@ -14,6 +14,7 @@ namespace whit {
 struct Oiio {
   ImageInfo (*probe)(const std::string& path);
   Image (*read)(const std::string& path);
+  ByteImage (*read_bytes)(const std::string& path);
 
   /// The bytes of a file of that kind: "tga", "jpg", "jpeg", "tif" or "tiff".
   std::vector<unsigned char> (*encode)(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);

@@ -82,6 +82,15 @@ InputPtr open_image(const std::string& path, ImageInfo& info) {
   return input;
 }
 
+template <class Number>
+InputPtr read_pixels(const std::string& path, OIIO::TypeDesc type, PixelArray<Number>& image) {
+  InputPtr input = open_image(path, image);
+  image.pixels.resize(static_cast<size_t>(image.width) * image.height * image.channels);
+  if (!input->read_image(0, 0, 0, image.channels, type, image.pixels.data()))
+    throw std::runtime_error(input->geterror());
+  return input;
+}
+
 }  // namespace
 
 ImageInfo oiio_probe(const std::string& path) {
@@ -92,11 +101,14 @@ ImageInfo oiio_probe(const std::string& path) {
 
 Image oiio_read(const std::string& path) {
   Image image;
-  const InputPtr input = open_image(path, image);
-  image.pixels.resize(static_cast<size_t>(image.width) * image.height * image.channels);
-  if (!input->read_image(0, 0, 0, image.channels, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-    throw std::runtime_error(input->geterror());
+  const InputPtr input = read_pixels(path, OIIO::TypeDesc::FLOAT, image);
   divide_exactly(input->spec(), image.pixels);
+  return image;
+}
+
+ByteImage oiio_read_bytes(const std::string& path) {
+  ByteImage image;
+  read_pixels(path, OIIO::TypeDesc::UINT8, image);
   return image;
 }
 
