@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace whit {
@@ -43,10 +44,18 @@ bool fits_half(const Texels& texels) {
   return std::all_of(texels.values.begin(), texels.values.end(), [](float v) { return std::abs(v) <= 65504.0f; });
 }
 
+bool is_grey(const ImageInfo& image) { return image.rgb_channels()[0] == image.rgb_channels()[1]; }
+
+// Whether level 0 can be the file's bytes: nothing is computed of them but one value each.
+bool keeps_bytes(const ImageInfo& image, const MipMapOptions& options) {
+  return image.format == SampleFormat::UInt8 && options.scale >= 0 && (is_grey(image) || !options.single) &&
+         is_power_of_two(image.width) && is_power_of_two(image.height);
+}
+
 // The picture's colour channels, flipped as asked for.
-std::vector<uint8_t> colour_bytes(const ByteImage& image, int channels, bool flip) {
+auto colour_bytes(const ByteImage& image, int channels, bool flip) {
   const std::vector<int> rgb = image.rgb_channels();
-  std::vector<uint8_t> bytes(static_cast<size_t>(image.width) * image.height * channels);
+  std::vector<uint8_t, PageAllocator<uint8_t>> bytes(static_cast<size_t>(image.width) * image.height * channels);
   uint8_t* to = bytes.data();
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -68,13 +77,12 @@ MipMap::MipMap(Image image, const MipMapOptions& options) : wrap_(options.wrap) 
 }
 
 MipMap::MipMap(ByteImage image, const MipMapOptions& options) : wrap_(options.wrap) {
-  const bool as_half = options.scale >= 0;
-  const bool grey = image.rgb_channels()[0] == image.rgb_channels()[1];
-  if (as_half && (grey || !options.single) && is_power_of_two(image.width) && is_power_of_two(image.height)) {
-    channels_ = grey ? 1 : 3;
+  if (keeps_bytes(image, options)) {
+    channels_ = is_grey(image) ? 1 : 3;
     add_byte_levels(std::move(image), options);
     return;
   }
+  const bool as_half = options.scale >= 0;
   Texels texels = make_texels(image, options.single, options.gamma, as_half ? 1 : options.scale, options.flip);
   image.pixels = {};
   add_levels(resample_to_power_of_two(std::move(texels), wrap_), as_half, options.scale);
@@ -82,17 +90,18 @@ MipMap::MipMap(ByteImage image, const MipMapOptions& options) : wrap_(options.wr
 
 // The picture's own bytes, with the table that decodes them, and what is coarser in halves.
 void MipMap::add_byte_levels(ByteImage image, const MipMapOptions& options) {
-  Level& finest = levels_.emplace_back();
-  finest.width = image.width;
-  finest.height = image.height;
-  finest.storage = Storage::Bytes;
-  finest.bytes = colour_bytes(image, channels_, options.flip);
+  const auto finest = std::make_shared<Level>();
+  levels_.push_back(finest);
+  finest->width = image.width;
+  finest->height = image.height;
+  finest->storage = Storage::Bytes;
+  finest->bytes = colour_bytes(image, channels_, options.flip);
   image.pixels = {};
   const std::array<float, 256> values = byte_values(options.gamma);
   std::transform(values.begin(), values.end(), byte_values_.begin(), [&](float v) { return options.scale * v; });
-  if (finest.width == 1 && finest.height == 1) return;
-  const auto value = [&values, bytes = finest.bytes.data()](size_t i) { return values[bytes[i]]; };
-  add_levels(halve(finest.width, finest.height, channels_, wrap_, value), true, options.scale);
+  if (finest->width == 1 && finest->height == 1) return;
+  const auto value = [&values, bytes = finest->bytes.data()](size_t i) { return values[bytes[i]]; };
+  add_levels(halve(finest->width, finest->height, channels_, wrap_, value), true, options.scale);
 }
 
 // `texels` and all that are coarser, as halves where wanted and possible: then the scale is still to be applied.
@@ -104,23 +113,45 @@ void MipMap::add_levels(Texels texels, bool as_half, float scale) {
   channels_ = texels.channels;
   gain_ = as_half ? scale : 1;
   for (;;) {
-    Level& level = levels_.emplace_back();
-    level.width = texels.width;
-    level.height = texels.height;
-    level.storage = as_half ? Storage::Halves : Storage::Floats;
+    const auto level = std::make_shared<Level>();
+    levels_.push_back(level);
+    level->width = texels.width;
+    level->height = texels.height;
+    level->storage = as_half ? Storage::Halves : Storage::Floats;
     const bool last = texels.width == 1 && texels.height == 1;
     Texels coarser = last ? Texels{} : halve(texels, wrap_);
-    if (as_half) level.halves.assign(texels.values.begin(), texels.values.end());
-    else level.floats = std::move(texels.values);
+    if (as_half) level->halves.assign(texels.values.begin(), texels.values.end());
+    else level->floats = std::move(texels.values);
     if (last) return;
     texels = std::move(coarser);
   }
 }
 
+MipMap::MipMap(const MipMap& whole, int first) : MipMap(whole) {
+  first_ = first;
+  for (int i = 0; i < first; ++i) {
+    const auto gone = std::make_shared<Level>();
+    gone->width = width(i);
+    gone->height = height(i);
+    levels_[i] = gone;
+  }
+}
+
+size_t MipMap::bytes_to_build(const ImageInfo& image, const MipMapOptions& options) {
+  const auto area = [](auto w, auto h) { return static_cast<size_t>(w) * static_cast<size_t>(h); };
+  const size_t pixels = area(image.width, image.height), channels = options.single || is_grey(image) ? 1 : 3;
+  const size_t read = pixels * image.channels * (image.format == SampleFormat::UInt8 ? 1 : sizeof(float));
+  // The file's bytes and level 0; later level 0, two levels in floats, and the halves of one.
+  if (keeps_bytes(image, options)) return std::max(read + channels * pixels, 3 * channels * pixels);
+  // The picture and its texels; later those and what they are resampled to, or the next level and the halves of both.
+  const size_t texels = area(std::bit_ceil(unsigned(image.width)), std::bit_ceil(unsigned(image.height)));
+  return sizeof(float) * channels * std::max(pixels, 2 * texels) + read;
+}
+
 size_t MipMap::bytes() const {
   size_t sum = 0;
-  for (const Level& level : levels_)
-    sum += level.bytes.size() + level.halves.size() * sizeof(Imath::half) + level.floats.size() * sizeof(float);
+  for (const auto& level : levels_)
+    sum += level->bytes.size() + level->halves.size() * sizeof(Imath::half) + level->floats.size() * sizeof(float);
   return sum;
 }
 

@@ -14,9 +14,11 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/image/page_allocator.h"
 #include "core/image/texels.h"
 
 namespace whit {
@@ -59,25 +61,33 @@ class MipMap {
   MipMap(Image image, const MipMapOptions& options);
   MipMap(ByteImage image, const MipMapOptions& options);
 
+  /// `whole` without the levels finer than `first`; the others are shared with it.
+  MipMap(const MipMap& whole, int first);
+
+  /// At most this many bytes are alive at once while a picture is read and its pyramid built, both included.
+  static size_t bytes_to_build(const ImageInfo& image, const MipMapOptions& options);
+
   int channels() const { return channels_; }  ///< 1 or 3.
   int level_count() const { return static_cast<int>(levels_.size()); }
-  int width(int level = 0) const { return levels_[level].width; }    ///< A power of two.
-  int height(int level = 0) const { return levels_[level].height; }  ///< A power of two.
-  size_t bytes() const;                                              ///< Memory the texels take.
+  int first_level() const { return first_; }                          ///< The finest level it has.
+  int width(int level = 0) const { return levels_[level]->width; }    ///< A power of two.
+  int height(int level = 0) const { return levels_[level]->height; }  ///< A power of two.
+  size_t bytes() const;                                               ///< Memory the texels take.
 
-  /// n filtered values; `out` has one array for each channel.
-  void lookup(const LookupPoints& points, const MipFilter& filter, float* const* out) const;
+  /// n filtered values; `out` has one array for each channel. Returns the finest level that the points need: when
+  /// that is finer than first_level(), the values are of no use.
+  int lookup(const LookupPoints& points, const MipFilter& filter, float* const* out) const;
 
-  /// n trilinear values for a square footprint of the given width in st; `out` as above.
-  void lookup_width(int n, const float* s, const float* t, const float* width, float* const* out) const;
+  /// n trilinear values for a square footprint of the given width in st; `out` and the result as above.
+  int lookup_width(int n, const float* s, const float* t, const float* width, float* const* out) const;
 
  private:
   enum class Storage : uint8_t { Bytes, Halves, Floats };
   struct Level {
     int width = 0, height = 0;
     Storage storage = Storage::Floats;
-    std::vector<uint8_t> bytes;       // decoded by byte_values_
-    std::vector<Imath::half> halves;  // times gain_
+    std::vector<uint8_t, PageAllocator<uint8_t>> bytes;           // decoded by byte_values_
+    std::vector<Imath::half, PageAllocator<Imath::half>> halves;  // times gain_
     std::vector<float> floats;
   };
   template <int C>
@@ -89,9 +99,10 @@ class MipMap {
   void add_byte_levels(ByteImage image, const MipMapOptions& options);
   void add_levels(Texels texels, bool as_half, float scale);
   template <int C, class F>
-  void with_sampler(const F& f) const;
+  int with_sampler(const F& f) const;
 
-  std::vector<Level> levels_;
+  std::vector<std::shared_ptr<const Level>> levels_;
+  int first_ = 0;
   int channels_ = 0;
   WrapMode wrap_ = WrapMode::Repeat;
   float gain_ = 1;

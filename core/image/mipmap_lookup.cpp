@@ -68,7 +68,10 @@ struct MipMap::Ellipse {
 template <int C, WrapMode W>
 class MipMap::Sampler {
  public:
-  explicit Sampler(const MipMap& map) : map_(map), last_(map.level_count() - 1) {}
+  explicit Sampler(const MipMap& map) : map_(map), last_(map.level_count() - 1), finest_(last_) {}
+
+  // The finest level asked for so far.
+  int finest() const { return finest_; }
 
   // st near enough to the texture for integer texel indices, at no change of the result: a repeating texture is
   // reduced to [0, 1], exactly; with the others everything 10 000 texture sizes away looks the same.
@@ -84,11 +87,11 @@ class MipMap::Sampler {
   }
 
   Value<C> coarsest() const {
-    return with_fetch(map_.levels_[last_], [](const auto& fetch) { return fetch(0); });
+    return with_fetch(*map_.levels_[last_], [](const auto& fetch) { return fetch(0); });
   }
 
-  Value<C> bilinear(int level, float s, float t) const {
-    const Level& l = map_.levels_[level];
+  Value<C> bilinear(int level, float s, float t) {
+    const Level& l = use(level);
     s = s * static_cast<float>(l.width) - 0.5f;
     t = t * static_cast<float>(l.height) - 0.5f;
     const float s_floor = std::floor(s), t_floor = std::floor(t);
@@ -108,7 +111,7 @@ class MipMap::Sampler {
   }
 
   // `width` is the footprint's side in st; not finite means everything.
-  Value<C> trilinear(float s, float t, float width) const {
+  Value<C> trilinear(float s, float t, float width) {
     const float level = static_cast<float>(last_) + std::log2(std::max(width, 1e-8f));
     if (!(level < static_cast<float>(last_))) return coarsest();
     if (level < 0) return bilinear(0, s, t);
@@ -116,7 +119,7 @@ class MipMap::Sampler {
     return mix(level - static_cast<float>(fine), bilinear(fine, s, t), bilinear(fine + 1, s, t));
   }
 
-  Value<C> ewa(float s, float t, const float (&dx)[2], const float (&dy)[2], float max_anisotropy) const {
+  Value<C> ewa(float s, float t, const float (&dx)[2], const float (&dy)[2], float max_anisotropy) {
     const float x2 = dx[0] * dx[0] + dx[1] * dx[1], y2 = dy[0] * dy[0] + dy[1] * dy[1];
     const float(&major)[2] = x2 < y2 ? dy : dx;
     float minor[2] = {x2 < y2 ? dx[0] : dy[0], x2 < y2 ? dx[1] : dy[1]};
@@ -139,6 +142,12 @@ class MipMap::Sampler {
   }
 
  private:
+  // A level the pyramid does not have is noted, and the finest that it has taken in its place.
+  const Level& use(int level) {
+    finest_ = std::min(finest_, level);
+    return *map_.levels_[std::max(level, map_.first_)];
+  }
+
   static void add(Value<C>& sum, float weight, const Value<C>& v) {
     for (int c = 0; c < C; ++c) sum[c] += weight * v[c];
   }
@@ -174,8 +183,8 @@ class MipMap::Sampler {
     }
   }
 
-  Value<C> ewa_level(int level, float s, float t, const float (&d0)[2], const float (&d1)[2]) const {
-    const Level& l = map_.levels_[level];
+  Value<C> ewa_level(int level, float s, float t, const float (&d0)[2], const float (&d1)[2]) {
+    const Level& l = use(level);
     const Ellipse e(l, s, t, d0, d1);
     const float* const weights = ewa_weights().data();
     float weight_sum = 0;
@@ -205,15 +214,20 @@ class MipMap::Sampler {
 
   const MipMap& map_;
   const int last_;
+  int finest_;
 };
 
-// Calls f with the sampler of this map's wrap mode.
+// Calls f with the sampler of this map's wrap mode; returns the finest level that f asked for.
 template <int C, class F>
-void MipMap::with_sampler(const F& f) const {
+int MipMap::with_sampler(const F& f) const {
+  const auto run = [&](auto sampler) {
+    f(sampler);
+    return sampler.finest();
+  };
   switch (wrap_) {
-    case WrapMode::Repeat: return f(Sampler<C, WrapMode::Repeat>(*this));
-    case WrapMode::Black: return f(Sampler<C, WrapMode::Black>(*this));
-    case WrapMode::Clamp: return f(Sampler<C, WrapMode::Clamp>(*this));
+    case WrapMode::Repeat: return run(Sampler<C, WrapMode::Repeat>(*this));
+    case WrapMode::Black: return run(Sampler<C, WrapMode::Black>(*this));
+    default: return run(Sampler<C, WrapMode::Clamp>(*this));
   }
 }
 
@@ -226,9 +240,9 @@ void put(float* const* out, int i, const std::array<float, C>& v) {
 
 }  // namespace
 
-void MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const* out) const {
+int MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const* out) const {
   const float anisotropy = std::clamp(filter.max_anisotropy, 0.01f, 256.0f);
-  const auto at = [&](const auto& sampler, int i) {
+  const auto at = [&](auto& sampler, int i) {
     const float s = sampler.reduce(p.s[i]), t = sampler.reduce(p.t[i]);
     if (!p.dsdx) return sampler.bilinear(0, s, t);
     const float dx[2] = {p.dsdx[i], p.dtdx[i]}, dy[2] = {p.dsdy[i], p.dtdy[i]};
@@ -238,24 +252,22 @@ void MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const
     const float widest = std::max({std::abs(dx[0]), std::abs(dx[1]), std::abs(dy[0]), std::abs(dy[1])});
     return sampler.trilinear(s, t, widest);
   };
-  const auto run = [&](const auto& sampler) {
+  const auto run = [&](auto& sampler) {
     for (int i = 0; i < p.n; ++i)
       put(out, i, std::isfinite(p.s[i]) && std::isfinite(p.t[i]) ? at(sampler, i) : sampler.no_value());
   };
-  if (channels_ == 1) with_sampler<1>(run);
-  else with_sampler<3>(run);
+  return channels_ == 1 ? with_sampler<1>(run) : with_sampler<3>(run);
 }
 
-void MipMap::lookup_width(int n, const float* s, const float* t, const float* width, float* const* out) const {
-  const auto run = [&](const auto& sampler) {
+int MipMap::lookup_width(int n, const float* s, const float* t, const float* width, float* const* out) const {
+  const auto run = [&](auto& sampler) {
     for (int i = 0; i < n; ++i)
       put(out, i,
           std::isfinite(s[i]) && std::isfinite(t[i])
               ? sampler.trilinear(sampler.reduce(s[i]), sampler.reduce(t[i]), width[i])
               : sampler.no_value());
   };
-  if (channels_ == 1) with_sampler<1>(run);
-  else with_sampler<3>(run);
+  return channels_ == 1 ? with_sampler<1>(run) : with_sampler<3>(run);
 }
 
 }  // namespace whit

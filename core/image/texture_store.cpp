@@ -6,30 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <exception>
+#include <limits>
+#include <utility>
 
 #include "core/base/vec.h"
 
 namespace whit {
-namespace {
-
-template <class Picture>
-MipMap* make_pyramid(Result<Picture> image, const MipMapOptions& options, std::string& error) {
-  error = image.error;
-  return image.ok() ? new MipMap(std::move(image.value), options) : nullptr;
-}
-
-// The pyramid of a file, or null and why there is none.
-MipMap* read_pyramid(const std::string& path, const MipMapOptions& options, std::string& error) {
-  const Result<ImageInfo> info = probe_image(path);
-  error = info.error;
-  if (!info.ok()) return nullptr;
-  if (info.value.format == SampleFormat::UInt8) return make_pyramid(read_byte_image(path), options, error);
-  return make_pyramid(read_image(path), options, error);
-}
-
-}  // namespace
-
-// Bytes of all pyramids alive, also of those dropped but still in use; outlives the store if a pyramid does.
+// Bytes of all pyramids alive, also of those dropped but still in use, and of what is being decoded; outlives the store
+// if a pyramid does.
 struct TextureStore::Memory {
   std::atomic<size_t> bytes{0}, peak{0};
   void add(size_t n) {
@@ -41,74 +25,120 @@ struct TextureStore::Memory {
 
 // A decoded file, shared by the textures that differ only in their filter.
 struct ImageTexture::Source {
+  static constexpr int kNone = std::numeric_limits<int>::max();
+
   TextureSpec spec;
   std::mutex mutex;  // held while decoding, so that it happens once; guards the next three
   std::shared_ptr<const MipMap> pyramid;
   std::string error;
   bool failed = false;
+  std::atomic<int> finest{kNone};     // the finest level that lookups have needed
   std::atomic<int64_t> last_use{-1};  // the store's clock at the latest lookup
   alignas(64) std::atomic<int64_t> lookups{0};
+
+  void note_level(int level) {
+    int old = finest.load(std::memory_order_relaxed);
+    while (level < old && !finest.compare_exchange_weak(old, level)) {}
+  }
 };
 
 ImageTexture::ImageTexture(TextureStore& store, Source& source, TextureSpec spec)
     : store_(store), source_(source), spec_(std::move(spec)) {}
 
-std::shared_ptr<const MipMap> ImageTexture::acquire(int n) const {
+// Calls look(pyramid), which returns the finest level it needed, again if the pyramid does not have that any more.
+// False when the file cannot be decoded.
+template <class Look>
+bool ImageTexture::with_pyramid(int n, const Look& look) const {
   source_.lookups.fetch_add(n, std::memory_order_relaxed);
-  return store_.resident(source_);
+  for (int level = Source::kNone;;) {
+    const auto map = store_.resident(source_, level);
+    if (!map) return false;
+    level = look(*map);
+    source_.note_level(level);
+    if (level >= map->first_level()) return true;
+  }
 }
 
-std::shared_ptr<const MipMap> ImageTexture::pyramid() const { return acquire(0); }
+std::shared_ptr<const MipMap> ImageTexture::pyramid() const {
+  source_.note_level(0);
+  return store_.resident(source_, 0);
+}
 
 void ImageTexture::lookup(int n, const float* s, const float* t, const float* dsdx, const float* dtdx,
                           const float* dsdy, const float* dtdy, float* r, float* g, float* b) const {
-  float* const out[3] = {r, g, b};
-  const auto map = acquire(n);
-  if (!map) {
-    for (float* channel : out) std::fill_n(channel, n, 0.0f);
-    return;
-  }
-  map->lookup({n, s, t, dsdx, dtdx, dsdy, dtdy}, {spec_.trilinear, spec_.max_anisotropy}, out);
-  if (map->channels() == 1) {
-    std::copy_n(r, n, g);
-    std::copy_n(r, n, b);
-  }
-}
-
-void ImageTexture::lookup_float(int n, const float* s, const float* t, const float* dsdx, const float* dtdx,
-                                const float* dsdy, const float* dtdy, float* out) const {
-  const auto map = acquire(n);
-  if (!map) {
-    std::fill_n(out, n, 0.0f);
-    return;
-  }
+  const LookupPoints points{n, s, t, dsdx, dtdx, dsdy, dtdy};
   const MipFilter filter{spec_.trilinear, spec_.max_anisotropy};
-  if (map->channels() == 1) return map->lookup({n, s, t, dsdx, dtdx, dsdy, dtdy}, filter, &out);
-  constexpr int kChunk = 128;
-  std::array<std::array<float, kChunk>, 3> rgb;
-  for (int first = 0; first < n; first += kChunk) {
-    const int count = std::min(kChunk, n - first);
-    const auto from = [first](const float* p) { return p ? p + first : nullptr; };
-    float* const channels[3] = {rgb[0].data(), rgb[1].data(), rgb[2].data()};
-    map->lookup({count, s + first, t + first, from(dsdx), from(dtdx), from(dsdy), from(dtdy)}, filter, channels);
-    for (int i = 0; i < count; ++i) out[first + i] = luminance(RGB(rgb[0][i], rgb[1][i], rgb[2][i]));
-  }
+  look_up_rgb(n, {r, g, b}, [&](const MipMap& map, float* const* out) { return map.lookup(points, filter, out); });
 }
 
 void ImageTexture::lookup_width(int n, const float* s, const float* t, const float* width, float* r, float* g,
                                 float* b) const {
-  float* const out[3] = {r, g, b};
-  const auto map = acquire(n);
-  if (!map) {
-    for (float* channel : out) std::fill_n(channel, n, 0.0f);
-    return;
-  }
-  map->lookup_width(n, s, t, width, out);
-  if (map->channels() == 1) {
-    std::copy_n(r, n, g);
-    std::copy_n(r, n, b);
-  }
+  look_up_rgb(n, {r, g, b},
+              [&](const MipMap& map, float* const* out) { return map.lookup_width(n, s, t, width, out); });
 }
+
+template <class Look>
+void ImageTexture::look_up_rgb(int n, const std::array<float*, 3>& out, const Look& look) const {
+  const bool good = with_pyramid(n, [&](const MipMap& map) {
+    const int level = look(map, out.data());
+    if (map.channels() == 1) {
+      std::copy_n(out[0], n, out[1]);
+      std::copy_n(out[0], n, out[2]);
+    }
+    return level;
+  });
+  if (good) return;
+  for (float* channel : out) std::fill_n(channel, n, 0.0f);
+}
+
+void ImageTexture::lookup_float(int n, const float* s, const float* t, const float* dsdx, const float* dtdx,
+                                const float* dsdy, const float* dtdy, float* out) const {
+  const MipFilter filter{spec_.trilinear, spec_.max_anisotropy};
+  const bool good = with_pyramid(n, [&](const MipMap& map) {
+    if (map.channels() == 1) return map.lookup({n, s, t, dsdx, dtdx, dsdy, dtdy}, filter, &out);
+    constexpr int kChunk = 128;
+    std::array<std::array<float, kChunk>, 3> rgb;
+    int level = map.level_count() - 1;
+    for (int first = 0; first < n; first += kChunk) {
+      const int count = std::min(kChunk, n - first);
+      const auto from = [first](const float* p) { return p ? p + first : nullptr; };
+      float* const channels[3] = {rgb[0].data(), rgb[1].data(), rgb[2].data()};
+      const LookupPoints chunk{count, s + first, t + first, from(dsdx), from(dtdx), from(dsdy), from(dtdy)};
+      level = std::min(level, map.lookup(chunk, filter, channels));
+      for (int i = 0; i < count; ++i) out[first + i] = luminance(RGB(rgb[0][i], rgb[1][i], rgb[2][i]));
+    }
+    return level;
+  });
+  if (!good) std::fill_n(out, n, 0.0f);
+}
+
+// A part of the cap for what is being decoded.
+class TextureStore::Workspace {
+ public:
+  Workspace(TextureStore& store, size_t bytes, const ImageTexture::Source& source) : store_(store), bytes_(bytes) {
+    std::unique_lock lock(store_.workspace_mutex_);
+    // What another thread is decoding can be dropped when it is done. A texture larger than the cap is decoded alone.
+    while (!store_.make_room(bytes, source) && store_.workspaces_ > 0) store_.workspace_done_.wait(lock);
+    ++store_.workspaces_;
+    store_.memory_->add(bytes);
+  }
+  ~Workspace() { become(0); }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  /// The part ends, and what came of it counts instead.
+  void become(size_t bytes) {
+    if (bytes_ == 0) return;
+    store_.memory_->bytes += bytes - std::exchange(bytes_, 0);
+    const std::lock_guard lock(store_.workspace_mutex_);
+    --store_.workspaces_;
+    store_.workspace_done_.notify_all();
+  }
+
+ private:
+  TextureStore& store_;
+  size_t bytes_;
+};
 
 TextureStore::TextureStore() : memory_(std::make_shared<Memory>()) {}
 TextureStore::~TextureStore() = default;
@@ -129,74 +159,123 @@ const ImageTexture* TextureStore::add(const TextureSpec& spec) {
 
 void TextureStore::set_memory_limit(size_t bytes) { limit_ = bytes; }
 
-// The source's pyramid, decoded if need be. Others who want it meanwhile wait; nobody else does.
-std::shared_ptr<const MipMap> TextureStore::resident(ImageTexture::Source& source) {
+// The source's pyramid with the levels from `level` on, decoded if need be. Others who want it meanwhile wait; nobody
+// else does, but for those who decode when memory is short.
+std::shared_ptr<const MipMap> TextureStore::resident(ImageTexture::Source& source, int level) {
   // The latest user is left alone, so a scene with one texture does not fight over the clock.
   if (source.last_use.load(std::memory_order_relaxed) != clock_.load(std::memory_order_relaxed))
     source.last_use.store(++clock_, std::memory_order_relaxed);
-  std::shared_ptr<const MipMap> map;
-  {
-    const std::lock_guard lock(source.mutex);
-    if (source.pyramid || source.failed) return source.pyramid;
-    map = decode(source);
-  }
-  if (map && memory_->bytes.load() > limit_.load()) evict(source);
-  return map;
+  const std::lock_guard lock(source.mutex);
+  if (source.failed || (source.pyramid && source.pyramid->first_level() <= level)) return source.pyramid;
+  source.pyramid.reset();
+  decode(source);
+  return source.pyramid;
 }
 
 // Called with the source's mutex held. While this thread waits for the parallel parts of decoding it must not
 // pick up a task that wants the same mutex: hence the isolation.
-std::shared_ptr<const MipMap> TextureStore::decode(ImageTexture::Source& source) {
+void TextureStore::decode(ImageTexture::Source& source) {
   const TextureSpec& spec = source.spec;
   const MipMapOptions options{spec.kind == TextureKind::Float, spec.wrap, spec.gamma, spec.scale, spec.flip};
   try {
-    MipMap* made = tbb::this_task_arena::isolate([&] { return read_pyramid(spec.path, options, source.error); });
-    if (made) {
-      memory_->add(made->bytes());
-      source.pyramid = {made, [memory = memory_](const MipMap* map) {
-                          memory->bytes -= map->bytes();
-                          delete map;
-                        }};
-      ++decodes_;
+    const Result<ImageInfo> info = probe_image(spec.path);
+    source.error = info.error;
+    if (info.ok()) {
+      Workspace workspace(*this, MipMap::bytes_to_build(info.value, options), source);
+      const bool bytes = info.value.format == SampleFormat::UInt8;
+      tbb::this_task_arena::isolate([&] {
+        source.pyramid = bytes ? keep(read_byte_image(spec.path), options, source.error, workspace)
+                               : keep(read_image(spec.path), options, source.error, workspace);
+      });
     }
   } catch (const std::exception& e) {
     source.error = fmt::format("cannot decode image \"{}\": {}", spec.path, e.what());
   }
   source.failed = !source.pyramid;
   if (source.failed) failed_ = true;
-  return source.pyramid;
 }
 
-void TextureStore::evict(const ImageTexture::Source& keep) {
-  const std::lock_guard lock(mutex_);
+// Makes the pyramid and accounts for it until it is gone.
+template <class Picture>
+std::shared_ptr<const MipMap> TextureStore::keep(Result<Picture> image, const MipMapOptions& options,
+                                                 std::string& error, Workspace& workspace) {
+  error = image.error;
+  if (!image.ok()) return nullptr;
+  ++decodes_;
+  auto map = std::make_unique<MipMap>(std::move(image.value), options);
+  workspace.become(map->bytes());
+  return account(std::move(map));
+}
+
+// Takes the pyramid's bytes off the sum when it goes.
+std::shared_ptr<const MipMap> TextureStore::account(std::unique_ptr<const MipMap> map) {
+  return {map.release(), [memory = memory_](const MipMap* old) {
+            memory->bytes -= old->bytes();
+            delete old;
+          }};
+}
+
+// Frees memory until `wanted` more bytes fit: first levels finer than anyone has looked up (one of them is kept if
+// possible, because the next ray may be a little nearer), then whole pyramids, the least recently used first. False when
+// that was not enough.
+bool TextureStore::make_room(size_t wanted, const ImageTexture::Source& wanting) {
+  const auto fits = [&] { return memory_->bytes.load() + wanted <= limit_.load(); };
+  if (fits()) return true;
   std::vector<ImageTexture::Source*> oldest;
-  for (const auto& entry : sources_)
-    if (entry.second.get() != &keep) oldest.push_back(entry.second.get());
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& entry : sources_)
+      if (entry.second.get() != &wanting) oldest.push_back(entry.second.get());
+  }
   std::stable_sort(oldest.begin(), oldest.end(), [](const auto* a, const auto* b) {
     return a->last_use.load(std::memory_order_relaxed) < b->last_use.load(std::memory_order_relaxed);
   });
-  for (ImageTexture::Source* source : oldest) {
-    if (memory_->bytes.load() <= limit_.load()) return;
-    const std::unique_lock source_lock(source->mutex, std::try_to_lock);
-    if (!source_lock || !source->pyramid) continue;  // being decoded, or not resident
-    source->pyramid.reset();
+  const auto each = [&](auto reduce) {
+    for (ImageTexture::Source* source : oldest) {
+      if (fits()) return;
+      const std::unique_lock lock(source->mutex, std::try_to_lock);
+      if (lock && source->pyramid) reduce(*source);  // else being decoded, or not resident
+    }
+  };
+  for (const int spare : {1, 0}) each([&](ImageTexture::Source& source) { trim(source, spare); });
+  each([&](ImageTexture::Source& source) {
+    source.pyramid.reset();
+    source.finest = ImageTexture::Source::kNone;
     ++evictions_;
-  }
+  });
+  return fits();
+}
+
+// Gives up the levels that no lookup has needed, but for `spare` of them.
+void TextureStore::trim(ImageTexture::Source& source, int spare) {
+  const int finest = source.finest, first = finest - spare;
+  if (finest == ImageTexture::Source::kNone || first <= source.pyramid->first_level()) return;
+  auto rest = std::make_unique<MipMap>(*source.pyramid, first);
+  memory_->bytes += rest->bytes();
+  source.pyramid = account(std::move(rest));
+  ++trims_;
 }
 
 TextureStatistics TextureStore::statistics() const {
-  TextureStatistics s{memory_->bytes.load(), memory_->peak.load(), decodes_.load(), evictions_.load(), 0};
+  TextureStatistics s;
+  s.resident_bytes = memory_->bytes, s.peak_bytes = memory_->peak;
+  s.decodes = decodes_, s.trims = trims_, s.evictions = evictions_;
   const std::lock_guard lock(mutex_);
   for (const auto& entry : sources_) s.lookups += entry.second->lookups.load(std::memory_order_relaxed);
   return s;
 }
 
 std::vector<std::string> TextureStore::errors() const {
+  std::vector<ImageTexture::Source*> sources;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& entry : sources_) sources.push_back(entry.second.get());
+  }
   std::vector<std::string> all;
-  const std::lock_guard lock(mutex_);
-  for (const auto& entry : sources_) {
-    const std::lock_guard source_lock(entry.second->mutex);
-    if (!entry.second->error.empty()) all.push_back(entry.second->error);
+  for (ImageTexture::Source* source : sources) {
+    // Without the store's mutex: who decodes holds the source's, and may want the store's.
+    const std::lock_guard lock(source->mutex);
+    if (!source->error.empty()) all.push_back(source->error);
   }
   return all;
 }

@@ -1,7 +1,9 @@
-// Image textures of a scene: decoded when first looked up, shared when the same, dropped when memory is short.
+// Image textures of a scene: decoded when first looked up, shared when the same, reduced when memory is short.
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -31,9 +33,11 @@ struct TextureSpec {
 
 /// What happened so far; memory in bytes.
 struct TextureStatistics {
-  size_t resident_bytes = 0, peak_bytes = 0;
-  int64_t decodes = 0, evictions = 0;
-  int64_t lookups = 0;  ///< Points looked up.
+  size_t resident_bytes = 0, peak_bytes = 0;  ///< Of texels, and of what is being decoded.
+  int64_t decodes = 0;
+  int64_t trims = 0;      ///< Times that levels nobody had looked up were given up.
+  int64_t evictions = 0;  ///< Times that all of a texture was.
+  int64_t lookups = 0;    ///< Points looked up.
 };
 
 class TextureStore;
@@ -65,7 +69,10 @@ class ImageTexture {
   friend class TextureStore;
   struct Source;
   ImageTexture(TextureStore& store, Source& source, TextureSpec spec);
-  std::shared_ptr<const MipMap> acquire(int n) const;
+  template <class Look>
+  bool with_pyramid(int n, const Look& look) const;
+  template <class Look>
+  void look_up_rgb(int n, const std::array<float*, 3>& out, const Look& look) const;
 
   TextureStore& store_;
   Source& source_;
@@ -83,8 +90,9 @@ class TextureStore {
   /// The texture of that spec, made on first request; reads nothing (check the file with probe_image).
   const ImageTexture* add(const TextureSpec& spec);
 
-  /// Resident pyramids beyond this many bytes (default 1 GiB) are dropped, the least recently used first, and decoded
-  /// again when needed. One in use stays until its lookup ends; the latest decoded stays in any case.
+  /// The most bytes (default 1 GiB) that texels and what is being decoded may take. Before there would be more, levels
+  /// finer than anyone has looked up are dropped, then whole textures, the least recently used first, and decoded again
+  /// when needed. One in use stays until its lookup ends; the latest decoded stays in any case.
   void set_memory_limit(size_t bytes);
 
   TextureStatistics statistics() const;
@@ -100,10 +108,16 @@ class TextureStore {
   using SourceKey = std::tuple<std::string, TextureKind, WrapMode, bool, float, bool>;
   using TextureKey = std::tuple<SourceKey, bool, float>;
   struct Memory;
+  class Workspace;
 
-  std::shared_ptr<const MipMap> resident(ImageTexture::Source& source);
-  std::shared_ptr<const MipMap> decode(ImageTexture::Source& source);
-  void evict(const ImageTexture::Source& keep);
+  std::shared_ptr<const MipMap> resident(ImageTexture::Source& source, int level);
+  void decode(ImageTexture::Source& source);
+  template <class Picture>
+  std::shared_ptr<const MipMap> keep(Result<Picture> image, const MipMapOptions& options, std::string& error,
+                                     Workspace& workspace);
+  std::shared_ptr<const MipMap> account(std::unique_ptr<const MipMap> map);
+  bool make_room(size_t wanted, const ImageTexture::Source& wanting);
+  void trim(ImageTexture::Source& source, int spare);
 
   mutable std::mutex mutex_;  // guards the maps' structure, not the sources
   std::map<SourceKey, std::unique_ptr<ImageTexture::Source>> sources_;
@@ -111,7 +125,11 @@ class TextureStore {
   std::shared_ptr<Memory> memory_;
   std::atomic<size_t> limit_{size_t{1} << 30};
   std::atomic<bool> failed_{false};
-  std::atomic<int64_t> decodes_{0}, evictions_{0}, clock_{0};  // clock_ counts changes of the texture in use
+  std::atomic<int64_t> decodes_{0}, trims_{0}, evictions_{0};
+  std::atomic<int64_t> clock_{0};  // counts changes of the texture in use
+  std::mutex workspace_mutex_;     // guards workspaces_: how many threads are decoding
+  std::condition_variable workspace_done_;
+  int workspaces_ = 0;
 };
 
 }  // namespace whit

@@ -249,6 +249,40 @@ TEST(MipMap, compact_storage_stays_within_a_thousandth) {
       }
 }
 
+TEST(MipMap, building_takes_no_more_than_announced) {
+  // The announcement covers the picture as read and what there is at the end, of which the larger part is alive at once
+  // for floats: 3 channels of 4 bytes and 3 x 4 x 4/3 per pixel; bytes: 3 and 3 x (1 + 2/3).
+  for (const int side : {64, 50}) {
+    const Image floats = picture(side, side, 3);
+    const ByteImage bytes = bytes_of(floats);
+    const size_t pixels = size_t(side) * size_t(side);
+    EXPECT_GE(MipMap::bytes_to_build(floats, {}), 12 * pixels + MipMap(floats, {}).bytes());
+    EXPECT_GE(MipMap::bytes_to_build(bytes, {}), 3 * pixels + MipMap(bytes, {}).bytes());
+    EXPECT_LT(MipMap::bytes_to_build(bytes, {}), MipMap::bytes_to_build(floats, {}));
+  }
+}
+
+TEST(MipMap, without_fine_levels_coarse_lookups_are_the_same_and_fine_ones_say_so) {
+  // A footprint of 2^-3 in a texture of 2^5 texels is at level 5 - 3 = 2, whatever the filter.
+  const MipMap whole(bytes_of(picture(32, 32, 3)), {}), rest(whole, 2);
+  EXPECT_EQ(whole.first_level(), 0);
+  EXPECT_EQ(rest.first_level(), 2);
+  EXPECT_EQ(rest.width(), 32);
+  EXPECT_EQ(rest.bytes(), whole.bytes() - 32 * 32 * 3 - 16 * 16 * 3 * 2);
+  const float s[] = {0.3f}, t[] = {0.6f}, zero[] = {0};
+  for (const bool trilinear : {false, true})
+    for (const auto& [footprint, level] : {std::pair{0.125f, 2}, {0.3f, 3}, {100.0f, 5}, {0.12f, 1}, {0.001f, 0}}) {
+      float a[3], b[3];
+      float *const of_whole[] = {&a[0], &a[1], &a[2]}, *const of_rest[] = {&b[0], &b[1], &b[2]};
+      const LookupPoints point{1, s, t, &footprint, zero, zero, &footprint};
+      EXPECT_EQ(whole.lookup(point, {trilinear, 8}, of_whole), level);
+      EXPECT_EQ(rest.lookup(point, {trilinear, 8}, of_rest), level);
+      EXPECT_EQ(whole.lookup_width(1, s, t, &footprint, of_whole), level);
+      EXPECT_EQ(rest.lookup_width(1, s, t, &footprint, of_rest), level);
+      for (int c = 0; c < 3 && level >= 2; ++c) EXPECT_EQ(a[c], b[c]) << footprint;
+    }
+}
+
 TEST(MipMap, a_scale_cannot_overflow_halves) {
   const MipMap map(picture(4, 4, 1, SampleFormat::UInt8), {.scale = 1e9f});
   const float s[] = {0.5f}, t[] = {0.5f}, d[] = {4.0f}, zero[] = {0};

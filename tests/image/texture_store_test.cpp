@@ -90,9 +90,10 @@ TEST(TextureStore, many_threads_decode_once) {
 }
 
 TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
-  // A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 = 16380 bytes; two fit in 40000, three do not.
+  // A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 = 16380 bytes. While it is made there are the
+  // picture, 12288, and twice the texels, 24576: beside these 36864, one pyramid fits in 60000, two do not.
   TextureStore store;
-  store.set_memory_limit(40000);
+  store.set_memory_limit(60000);
   const ImageTexture* a = store.add(spec_of(constant_file("a", 32, 1)));
   const ImageTexture* b = store.add(spec_of(constant_file("b", 32, 2)));
   const ImageTexture* c = store.add(spec_of(constant_file("c", 32, 3)));
@@ -104,11 +105,55 @@ TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
   EXPECT_EQ(s.decodes, 3);
   EXPECT_EQ(s.evictions, 1);
   EXPECT_EQ(s.resident_bytes, 2u * 16380);
-  EXPECT_EQ(s.peak_bytes, 3u * 16380);
+  EXPECT_EQ(s.peak_bytes, 16380u + 36864u);
   EXPECT_EQ(look(a), 1);
   EXPECT_EQ(store.statistics().decodes, 3);  // still there
   EXPECT_EQ(look(b), 2);
   EXPECT_EQ(store.statistics().decodes, 4);  // decoded again
+}
+
+TEST(TextureStore, what_nobody_looked_up_goes_first) {
+  // As above, but the textures are seen from afar: a footprint of 1/4 is at level 5 - 2 = 3, 4 x 4 texels, and levels 3
+  // to 5 have (16 + 4 + 1) * 12 = 252 bytes. No texture is dropped, none decoded again, until someone looks closer.
+  TextureStore store;
+  store.set_memory_limit(60000);
+  std::vector<const ImageTexture*> textures;
+  for (int i = 0; i < 20; ++i)
+    textures.push_back(store.add(spec_of(constant_file(fmt::format("far{}", i), 32, float(i)))));
+  const float st = 0.5f, zero = 0, far = 0.25f, near = 0.03f;
+  const auto look_at = [&](const ImageTexture* texture, float d) {
+    float out = -1;
+    texture->lookup_float(1, &st, &st, &d, &zero, &zero, &d, &out);
+    return out;
+  };
+  for (int round = 0; round < 2; ++round)
+    for (int i = 0; i < 20; ++i) EXPECT_NEAR(look_at(textures[size_t(i)], far), float(i), 1e-5f);
+  TextureStatistics s = store.statistics();
+  EXPECT_EQ(s.decodes, 20);
+  EXPECT_EQ(s.evictions, 0);
+  EXPECT_GE(s.trims, 18);  // the two that came last were not in anybody's way
+  EXPECT_LE(s.peak_bytes, 60000u);
+  EXPECT_NEAR(look_at(textures[3], near), 3, 1e-5f);
+  EXPECT_EQ(store.statistics().decodes, 21);
+}
+
+TEST(TextureStore, threads_that_decode_share_the_cap) {
+  // Room for one at a time: 36864 while a pyramid is made, when each of the three other threads may be in a lookup of
+  // one that has been dropped, 16380. Without waiting it would be four times 36864.
+  TextureStore store;
+  store.set_memory_limit(40000);
+  std::vector<const ImageTexture*> textures;
+  for (int i = 0; i < 8; ++i)
+    textures.push_back(store.add(spec_of(constant_file(fmt::format("cap{}", i), 32, float(i)))));
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (int first = 0; first < 4; ++first)
+    threads.emplace_back([&, first] {
+      for (int i = 0; i < 100; ++i) wrong += look(textures[size_t(first + i) % 8]) != float((first + i) % 8);
+    });
+  for (std::thread& t : threads) t.join();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_LE(store.statistics().peak_bytes, 36864u + 3 * 16380u);
 }
 
 TEST(TextureStore, a_pyramid_in_use_survives_eviction) {

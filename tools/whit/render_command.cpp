@@ -318,8 +318,8 @@ class RenderJob {
                     scene.instances.size(), scene.lights.size()));
     say(fmt::format("{} surface points, {} footprints, {} interface crossings.", count_text(s.surface_points),
                     count_text(s.footprints), count_text(s.passing_rays)));
-    say(fmt::format("textures: {} lookups, {} decodes, {} evictions, peak {}.", count_text(t.lookups), t.decodes,
-                    t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
+    say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
+                    t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
   }
 
   const Settings& settings_;
