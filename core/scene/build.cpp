@@ -1,8 +1,10 @@
 // Building: the only bridge from what a scene file says to live objects.
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -20,6 +22,13 @@ struct LoadedShape {
   MeshData mesh;
   CurveData curves;
   Box3d bounds;  ///< In the group's own world coordinates, double.
+};
+
+/// What is left of a loaded shape in its group's space; analytic shapes have neither.
+struct BakedShape {
+  std::unique_ptr<Mesh> mesh;
+  std::unique_ptr<Curves> curves;
+  size_t degenerate = 0;  ///< Triangles left out.
 };
 
 /// A group of shapes that share a space: the world, an object definition, or one moving shape.
@@ -69,20 +78,32 @@ class Builder {
     if (!options_complete()) return nullptr;
     scene_->accel = std::make_unique<Accel>(AccelOptions{options_.robust_traversal});
     prepare_sampling();
+    const auto start = Clock::now();
     load_groups();
+    const auto loaded = Clock::now();
     choose_world_space();
     prepare_materials();
+    const auto prepared = Clock::now();
     bake_groups();
+    const auto baked = Clock::now();
     place_instances();
     prepare_lights();
     prepare_camera();
+    const auto placed = Clock::now();
     const std::string problem = scene_->accel->build();
     if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
+    scene_->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
+                             seconds(placed, Clock::now())};
     if (diagnostics_.has_errors() && !options_.keep_going) return nullptr;
     return std::move(scene_);
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  static double seconds(Clock::time_point from, Clock::time_point to) {
+    return std::chrono::duration<double>(to - from).count();
+  }
+
   const SceneDescription& description() const { return *scene_->bound.description; }
   const TransformPair& transform(int i) const { return description().transforms[static_cast<size_t>(i)]; }
 
@@ -91,15 +112,24 @@ class Builder {
     return b.camera.plugin && b.film.plugin && b.filter.plugin && b.sampler.plugin && b.integrator.plugin;
   }
 
-  PrepareContext context(SourcePos where) {
+  PrepareContext context(SourcePos where) { return context(where, diagnostics_); }
+  PrepareContext context(SourcePos where, Diagnostics& diagnostics) {
     PrepareContext ctx;
-    ctx.diagnostics = &diagnostics_;
+    ctx.diagnostics = &diagnostics;
     ctx.statement = where;
     ctx.textures = &textures_;
     ctx.space = scene_->space;
     ctx.scene_radius = scene_radius_;
     ctx.samples_per_pixel = scene_->samples_per_pixel;
     return ctx;
+  }
+
+  /// Calls f(i, diagnostics) for each i below n, on all threads; what they report is kept in order.
+  template <class F>
+  void for_each(size_t n, const F& f) {
+    std::vector<Diagnostics> reports(n);
+    tbb::parallel_for(size_t{0}, n, [&](size_t i) { f(i, reports[i]); });
+    for (const Diagnostics& report : reports) diagnostics_.append(report);
   }
 
   template <class T>
@@ -129,33 +159,42 @@ class Builder {
 
   // ---- Geometry ----
 
-  /// Reads the live shapes into their groups: 0 the world, then one per live object, then moving shapes.
+  /// Reads the live shapes, on all threads, and sorts them into groups: 0 the world, then one per object, then one per
+  /// moving shape.
   void load_groups() {
-    groups_.resize(1 + description().objects.size());
+    std::vector<LoadedShape> loaded;
     for (size_t i = 0; i < description().shapes.size(); ++i) {
-      if (!scene_->plan.shape_live[i]) continue;
-      const ShapeDescription& d = description().shapes[i];
-      const bool moves = transform(d.transform).animated();
-      if (moves) {
+      if (scene_->plan.shape_live[i]) loaded.emplace_back().description = i;
+    }
+    for_each(loaded.size(), [&](size_t i, Diagnostics& diagnostics) { load_shape(loaded[i], diagnostics); });
+    groups_.resize(1 + description().objects.size());
+    for (LoadedShape& shape : loaded) {
+      const ShapeDescription& d = description().shapes[shape.description];
+      Group* group = &groups_[static_cast<size_t>(d.object + 1)];
+      if (transform(d.transform).animated()) {
         moving_[d.object].push_back(groups_.size());
-        groups_.emplace_back().moving_shape = true;
+        group = &groups_.emplace_back();
+        group->moving_shape = true;
       }
-      load_shape(i, moves ? groups_.back() : groups_[static_cast<size_t>(d.object + 1)]);
+      if (shape.bounds.isEmpty()) continue;
+      group->bounds.extendBy(shape.bounds);
+      group->shapes.push_back(std::move(shape));
     }
   }
 
-  void load_shape(size_t i, Group& group) {
-    const ShapeDescription& d = description().shapes[i];
-    Shape& shape = *scene_->bound.shapes[i].plugin;
-    const Mat4d to_world = group.moving_shape ? Mat4d() : transform(d.transform).start;
-    LoadedShape loaded;
-    loaded.description = i;
-    if (!shape.prepare(context(d.where))) return;
+  /// Reads or makes the geometry of a shape and finds its bounds, which stay empty when there is none.
+  void load_shape(LoadedShape& loaded, Diagnostics& diagnostics) {
+    const ShapeDescription& d = description().shapes[loaded.description];
+    Shape& shape = *scene_->bound.shapes[loaded.description].plugin;
+    const TransformPair& placement = transform(d.transform);
+    const Mat4d to_world = placement.animated() ? Mat4d() : placement.start;
+    const PrepareContext ctx = context(d.where, diagnostics);
+    if (!shape.prepare(ctx)) return;
     if (auto* mesh = dynamic_cast<MeshShape*>(&shape)) {
-      if (!mesh->build_mesh(context(d.where), loaded.mesh)) return;
+      if (!mesh->build_mesh(ctx, loaded.mesh)) return;
       loaded.bounds = mesh_bounds(loaded.mesh, to_world);
     } else if (auto* curves = dynamic_cast<CurveShape*>(&shape)) {
-      if (!curves->build_curves(context(d.where), loaded.curves)) return;
+      if (!curves->build_curves(ctx, loaded.curves)) return;
       MeshData points;
       points.positions = loaded.curves.control_points;
       loaded.bounds = mesh_bounds(points, to_world);
@@ -166,9 +205,6 @@ class Builder {
             to_world, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
       }
     }
-    if (loaded.bounds.isEmpty()) return;
-    group.bounds.extendBy(loaded.bounds);
-    group.shapes.push_back(std::move(loaded));
   }
 
   /// Render space stands at the camera; object groups stand at their own centres.
@@ -220,13 +256,18 @@ class Builder {
   }
 
   void bake_groups() {
-    for (size_t g = 0; g < groups_.size(); ++g) {
-      Group& group = groups_[g];
+    std::vector<std::pair<const Group*, LoadedShape*>> all;
+    for (Group& group : groups_) {
+      for (LoadedShape& loaded : group.shapes) all.emplace_back(&group, &loaded);
+    }
+    std::vector<BakedShape> baked(all.size());
+    tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) { baked[i] = bake(*all[i].first, *all[i].second); });
+    auto next = baked.begin();
+    for (Group& group : groups_) {
       if (group.shapes.empty()) continue;
-      group.accel_group = g == 0 ? Accel::kWorld : scene_->accel->add_group();
-      for (LoadedShape& loaded : group.shapes) bake_shape(group, loaded);
+      group.accel_group = &group == &groups_[0] ? Accel::kWorld : scene_->accel->add_group();
+      for (const LoadedShape& loaded : group.shapes) add_shape(group, loaded, std::move(*next++));
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
-      group.shapes[0].mesh = {};
     }
     if (const auto& [triangles, shapes, first] = degenerate_; triangles > 0) {
       diagnostics_.warning(first,
@@ -236,29 +277,45 @@ class Builder {
     }
   }
 
-  void bake_shape(const Group& group, LoadedShape& loaded) {
+  Mat4d to_group(const Group& group, const ShapeDescription& d) const {
+    return (group.moving_shape ? Mat4d() : transform(d.transform).start) * group.space.from_world();
+  }
+
+  /// The geometry in its group's space; what it was made from is freed.
+  BakedShape bake(const Group& group, LoadedShape& loaded) const {
+    const ShapeDescription& d = description().shapes[loaded.description];
+    const Shape* plugin = scene_->bound.shapes[loaded.description].plugin.get();
+    BakedShape baked;
+    if (dynamic_cast<const MeshShape*>(plugin)) {
+      baked.mesh = bake_mesh(loaded.mesh, to_group(group, d), baked.degenerate);
+      baked.degenerate += loaded.mesh.degenerate;
+    } else if (dynamic_cast<const CurveShape*>(plugin)) {
+      baked.curves = bake_curves(loaded.curves, to_group(group, d));
+    }
+    loaded.mesh = {}, loaded.curves = {};
+    return baked;
+  }
+
+  void add_shape(const Group& group, const LoadedShape& loaded, BakedShape baked) {
     const ShapeDescription& d = description().shapes[loaded.description];
     Shape& plugin = *scene_->bound.shapes[loaded.description].plugin;
-    const Mat4d to_world = group.moving_shape ? Mat4d() : transform(d.transform).start;
-    const Mat4d to_group = to_world * group.space.from_world();
     SceneShape shape;
     shape.material = scene_->bound.shape_material[loaded.description];
     shape.passes_through = scene_->materials[static_cast<size_t>(shape.material)]->is_interface();
     // Given normals are mirrored with the rest, and stay on their side; so does all of a moving shape, as in pbrt-v3.
-    shape.flips = d.reverse_orientation != (loaded.mesh.normals.empty() && swaps_handedness(to_world));
+    const bool own_normals = baked.mesh && !baked.mesh->normals.empty();
+    const bool mirrored = !group.moving_shape && swaps_handedness(transform(d.transform).start);
+    shape.flips = d.reverse_orientation != (!own_normals && mirrored);
     const int index = static_cast<int>(scene_->shapes.size());
-    if (dynamic_cast<MeshShape*>(&plugin)) {
-      size_t degenerate = 0;
-      scene_->meshes.push_back(bake_mesh(loaded.mesh, to_group, degenerate));
-      shape.mesh = scene_->meshes.back().get();
-      degenerate_.add(loaded.mesh.degenerate + degenerate, d.where);
-      if (shape.mesh->indices.empty()) return;
-    } else if (dynamic_cast<CurveShape*>(&plugin)) {
-      scene_->curves.push_back(bake_curves(loaded.curves, to_group));
-      shape.curves = scene_->curves.back().get();
+    if (baked.mesh) {
+      degenerate_.add(baked.degenerate, d.where);
+      if (baked.mesh->indices.empty()) return;
+      shape.mesh = scene_->meshes.emplace_back(std::move(baked.mesh)).get();
+    } else if (baked.curves) {
+      shape.curves = scene_->curves.emplace_back(std::move(baked.curves)).get();
     } else {
       auto& analytic = dynamic_cast<AnalyticShape&>(plugin);
-      analytic.place(to_group, d.reverse_orientation);
+      analytic.place(to_group(group, d), d.reverse_orientation);
       shape.analytic = &analytic;
     }
     shape.unit = static_cast<float>(group.space.scale);
@@ -344,10 +401,10 @@ class Builder {
   // ---- Everything else ----
 
   void prepare_materials() {
-    for (size_t i = 0; i < scene_->bound.textures.size(); ++i) {
+    for_each(scene_->bound.textures.size(), [&](size_t i, Diagnostics& diagnostics) {
       const auto& texture = scene_->bound.textures[i];
-      if (texture.plugin && scene_->plan.texture_live[i]) texture.plugin->prepare(context(texture.where));
-    }
+      if (texture.plugin && scene_->plan.texture_live[i]) texture.plugin->prepare(context(texture.where, diagnostics));
+    });
     for (size_t i = 0; i < scene_->bound.materials.size(); ++i) {
       auto& material = scene_->bound.materials[i];
       if (!material.plugin) {

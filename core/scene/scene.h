@@ -88,6 +88,14 @@ struct BuildOptions {
   bool keep_going = false;  ///< Build what is usable despite errors.
 };
 
+/// Where the time went that build_scene() took, in seconds.
+struct BuildSeconds {
+  double read = 0;        ///< Reading and making geometry.
+  double prepare = 0;     ///< Textures and materials.
+  double bake = 0;        ///< Geometry to render space.
+  double accelerate = 0;  ///< The ray tracer's own structures.
+};
+
 struct Scene {
   RenderSpace space;
   BoundScene bound;
@@ -106,6 +114,7 @@ struct Scene {
   int light_dimensions = 0;                ///< Sample dimensions that the lights of one bounce use.
   int samples_per_pixel = 1;
   std::unique_ptr<Accel> accel;
+  BuildSeconds build_seconds;
 
   const Camera& camera() const { return *bound.camera.plugin; }
   const Film& film() const { return *bound.film.plugin; }

@@ -1,4 +1,5 @@
-// What building a scene says.
+// What building a scene says, and in what order, whatever thread was first.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "tests/scene/scene_text.h"
@@ -39,6 +40,31 @@ TEST(Build, DegenerateTrianglesOfAllShapesAreSaidOnce) {
   EXPECT_EQ(said.find("test.pbrt:4:1: warning: 3 degenerate triangles (no area) in 3 shapes, the first here\n"), 0u)
       << said;
   EXPECT_EQ(said.find("warning", 30), std::string::npos) << said;
+}
+
+TEST(Build, ShapesKeepTheOrderOfTheFile) {
+  // The i-th mesh has i + 1 triangles, and as many without area.
+  constexpr size_t kCount = 200;
+  std::string text = "WorldBegin\n";
+  for (size_t i = 0; i < kCount; ++i) {
+    text += "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [";
+    for (size_t k = 0; k <= i; ++k) text += "0 1 2 0 0 1 ";
+    text += "]\n";
+  }
+  test::Planned planned(text + "WorldEnd\n");
+  TextureStore textures;
+  Diagnostics said;
+  const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
+  ASSERT_TRUE(scene);
+  ASSERT_EQ(scene->shapes.size(), kCount);
+  for (size_t i = 0; i < kCount; ++i) {
+    EXPECT_EQ(scene->shapes[i].mesh->triangle_count(), i + 1);
+    EXPECT_EQ(scene->shapes[i].mesh, scene->meshes[i].get());
+  }
+  ASSERT_EQ(said.all().size(), 1u);
+  EXPECT_EQ(said.all()[0].message, fmt::format("{} degenerate triangles (no area) in {} shapes, the first here",
+                                               kCount * (kCount + 1) / 2, kCount));
+  EXPECT_EQ(planned.sources.place(said.all()[0].where).line, 2u);
 }
 
 }  // namespace

@@ -311,8 +311,14 @@ class RenderJob {
     }
   }
 
-  static void more_statistics(const Scene& scene, const RenderStatistics& s, const TextureStore& textures) {
+  void more_statistics(const Scene& scene, const RenderStatistics& s, const TextureStore& textures) const {
     const TextureStatistics t = textures.statistics();
+    const BuildSeconds& b = scene.build_seconds;
+    say(fmt::format(
+        "ready to trace after {}: geometry read in {}, textures and materials prepared in {}, geometry moved to "
+        "render space in {}, ray tracer built in {}.",
+        duration_text(times_.parse + times_.plan + times_.build), duration_text(b.read), duration_text(b.prepare),
+        duration_text(b.bake), duration_text(b.accelerate)));
     say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
                     bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(),
                     scene.instances.size(), scene.lights.size()));
