@@ -1,6 +1,7 @@
 // A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters. The file is
 // decoded when a ray first meets it.
 #include "core/image/image.h"
+#include "core/image/signature.h"
 #include "core/image/texture_store.h"
 #include "core/plugin/texture_channels.h"
 #include "core/plugin/texture_mapping.h"
@@ -23,9 +24,11 @@ class ImageMap : public Texture2D<T> {
   EffectSet effects() const override { return {Effect::TextureFiltering}; }
 
   bool prepare(const PrepareContext& ctx) override {
-    if (const Result<ImageInfo> info = probe_image(filename.path); !info.ok()) {
-      ctx.diagnostics->file_error(filename.where, info.error);
-      return false;
+    if (!begins_like_a_picture(filename.path)) {
+      if (const Result<ImageInfo> info = probe_image(filename.path); !info.ok()) {
+        ctx.diagnostics->file_error(filename.where, info.error);
+        return false;
+      }
     }
     TextureSpec spec;
     spec.path = filename.path;

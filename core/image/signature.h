@@ -1,0 +1,13 @@
+// Whether a file is a picture, by a look at its first bytes.
+#pragma once
+
+#include <string>
+
+namespace whit {
+
+/// True when the file begins as a sound png, jpg, exr or tga does, which is worth no more than that; false when it does
+/// not, cannot be read, or may be a picture of another kind: then probe_image() knows. A scene has thousands of pictures,
+/// and the libraries that know all kinds take longer to load than many a scene.
+bool begins_like_a_picture(const std::string& path);
+
+}  // namespace whit
