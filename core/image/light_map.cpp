@@ -19,7 +19,7 @@ bool LightMap::prepare(const PrepareContext& ctx, const FileName& file) {
   TextureSpec spec;
   spec.path = file.path;
   spec.flip = false;
-  image_ = ctx.textures->add(spec);
+  image_ = ctx.textures->add(spec, file.where);
   return true;
 }
 

@@ -28,6 +28,7 @@ struct ImageTexture::Source {
   static constexpr int kNone = std::numeric_limits<int>::max();
 
   TextureSpec spec;
+  SourcePos where;   // of the first that asked for it
   std::mutex mutex;  // held while decoding, so that it happens once; guards the next three
   std::shared_ptr<const MipMap> pyramid;
   std::string error;
@@ -143,7 +144,7 @@ class TextureStore::Workspace {
 TextureStore::TextureStore() : memory_(std::make_shared<Memory>()) {}
 TextureStore::~TextureStore() = default;
 
-const ImageTexture* TextureStore::add(const TextureSpec& spec) {
+const ImageTexture* TextureStore::add(const TextureSpec& spec, SourcePos where) {
   const SourceKey source_key{spec.path, spec.kind, spec.wrap, spec.gamma, spec.scale, spec.flip};
   const TextureKey key{source_key, spec.trilinear, spec.max_anisotropy};
   const std::lock_guard lock(mutex_);
@@ -151,6 +152,7 @@ const ImageTexture* TextureStore::add(const TextureSpec& spec) {
   if (!source) {
     source = std::make_unique<ImageTexture::Source>();
     source->spec = spec;
+    source->where = where;
   }
   auto& texture = textures_[key];
   if (!texture) texture.reset(new ImageTexture(*this, *source, spec));
@@ -265,17 +267,17 @@ TextureStatistics TextureStore::statistics() const {
   return s;
 }
 
-std::vector<std::string> TextureStore::errors() const {
+Diagnostics TextureStore::errors() const {
   std::vector<ImageTexture::Source*> sources;
   {
     const std::lock_guard lock(mutex_);
     for (const auto& entry : sources_) sources.push_back(entry.second.get());
   }
-  std::vector<std::string> all;
+  Diagnostics all;
   for (ImageTexture::Source* source : sources) {
     // Without the store's mutex: who decodes holds the source's, and may want the store's.
     const std::lock_guard lock(source->mutex);
-    if (!source->error.empty()) all.push_back(source->error);
+    if (!source->error.empty()) all.file_error(source->where, source->error);
   }
   return all;
 }

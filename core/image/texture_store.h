@@ -13,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "core/base/diagnostics.h"
 #include "core/image/mipmap.h"
 
 namespace whit {
@@ -88,7 +89,8 @@ class TextureStore {
   TextureStore& operator=(const TextureStore&) = delete;
 
   /// The texture of that spec, made on first request; reads nothing (check the file with probe_image).
-  const ImageTexture* add(const TextureSpec& spec);
+  /// `where` is the place of the file's name, for errors().
+  const ImageTexture* add(const TextureSpec& spec, SourcePos where = {});
 
   /// The most bytes (default 1 GiB) that texels and what is being decoded may take. Before there would be more, levels
   /// finer than anyone has looked up are dropped, then whole textures, the least recently used first, and decoded again
@@ -100,8 +102,8 @@ class TextureStore {
   /// True once a texture could not be decoded. Cheap, for a render to ask now and then.
   bool failed() const { return failed_.load(std::memory_order_relaxed); }
 
-  /// Why textures could not be decoded, one line each naming the file; empty when all is well.
-  std::vector<std::string> errors() const;
+  /// Why textures could not be decoded, one each naming the file; empty when all is well.
+  Diagnostics errors() const;
 
  private:
   friend class ImageTexture;

@@ -38,7 +38,7 @@ class ImageMap : public Texture2D<T> {
     spec.scale = scale;
     spec.trilinear = trilinear;
     spec.max_anisotropy = maxanisotropy;
-    image_ = ctx.textures->add(spec);
+    image_ = ctx.textures->add(spec, filename.where);
     return Texture2D<T>::prepare(ctx);
   }
 

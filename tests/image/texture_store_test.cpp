@@ -47,7 +47,7 @@ TEST(TextureStore, equal_specs_are_one_texture_and_nothing_is_read_before_it_is_
   EXPECT_EQ(a, store.add(spec));
   spec.scale = 2;
   EXPECT_NE(a, store.add(spec));
-  EXPECT_TRUE(store.errors().empty());
+  EXPECT_TRUE(store.errors().all().empty());
   EXPECT_EQ(store.statistics().decodes, 0);
 }
 
@@ -183,15 +183,17 @@ TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {
   TextureStore store;
   const std::string path = constant_file("cut", 64, 1);
   std::filesystem::resize_file(path, 500);
-  const ImageTexture* texture = store.add(spec_of(path));
+  const ImageTexture* texture = store.add(spec_of(path), {3, 40});
   EXPECT_FALSE(store.failed());
   EXPECT_EQ(look(texture), 0);
   EXPECT_TRUE(store.failed());
   EXPECT_EQ(look(texture), 0);
   EXPECT_EQ(texture->pyramid(), nullptr);
-  const auto errors = store.errors();
-  ASSERT_EQ(errors.size(), 1u);
-  EXPECT_NE(errors[0].find(path), std::string::npos);
+  const Diagnostics errors = store.errors();
+  ASSERT_EQ(errors.all().size(), 1u);
+  EXPECT_NE(errors.all()[0].message.find(path), std::string::npos);
+  EXPECT_EQ(errors.all()[0].where.file, 3u);
+  EXPECT_EQ(errors.all()[0].where.offset, 40u);
   EXPECT_EQ(store.statistics().decodes, 0);
 }
 

@@ -215,8 +215,7 @@ class RenderJob {
   int trace_and_write(const Scene& scene, const OutputPlan& output, const TextureStore& textures) {
     const RenderResult result = trace(scene, textures);
     times_.render = result.seconds;
-    for (const std::string& error : textures.errors()) say("whit: " + error);
-    if (!textures.errors().empty() && !settings_.keep_going) return kFileError;
+    if (int code = report(textures.errors()); code != kDone) return code;
     const auto start = std::chrono::steady_clock::now();
     std::vector<std::string> notes;
     const std::string problem = write_output(output, result.picture, metadata(scene, result), notes);
