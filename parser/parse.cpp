@@ -35,6 +35,7 @@ class FileReader {
     while (!open_.empty()) {
       const ReadResult result = read_statement(open_.back().lexer, statement_);
       append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
+      release(open_.back());
       if (result == ReadResult::End) open_.pop_back();
       if (result != ReadResult::Good) continue;
       builder.apply(statement_);
@@ -48,7 +49,17 @@ class FileReader {
     uint32_t file;
     Lexer lexer;
     ParameterList trailing;  ///< Those behind the Include, for the last statement.
+    uint64_t released = 0;
   };
+
+  /// What has been read of a large file need not stay in memory.
+  void release(OpenFile& open) const {
+    constexpr uint64_t kLeast = uint64_t{1} << 24;
+    const uint64_t behind = open.lexer.consumed();
+    if (behind - open.released < kLeast) return;
+    sources_.release(open.file, open.released, behind);
+    open.released = behind;
+  }
 
   void push(uint32_t file, ParameterList trailing = {}) {
     const std::string_view text = sources_.text(file);

@@ -98,6 +98,13 @@ class Sources::File {
 
   std::string_view text() const { return text_; }
 
+  void release(uint64_t begin, uint64_t end) const {
+    if (!mapped_) return;
+    const auto page = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
+    const uint64_t first = begin / page * page, last = std::min<uint64_t>(end, text_.size()) / page * page;
+    if (first < last) ::madvise(const_cast<char*>(text_.data()) + first, last - first, MADV_DONTNEED);
+  }
+
   /// How many newlines there are before `offset`.
   uint64_t lines_before(uint64_t offset) const {
     const uint64_t block = offset / kBlock;
@@ -183,6 +190,10 @@ uint32_t Sources::add_text(std::string name, std::string text) {
 std::string_view Sources::text(uint32_t file) const {
   const File* f = find(file);
   return f ? f->text() : std::string_view();
+}
+
+void Sources::release(uint32_t file, uint64_t begin, uint64_t end) const {
+  if (const File* f = find(file)) f->release(begin, end);
 }
 
 const std::string& Sources::name(uint32_t file) const {

@@ -37,6 +37,9 @@ class Sources {
   /// The bytes of a file; empty for a number that names none.
   std::string_view text(uint32_t file) const;
 
+  /// Gives the memory of a file's bytes in [begin, end) back to the system, which reads them again should anyone look.
+  void release(uint32_t file, uint64_t begin, uint64_t end) const;
+
   /// The name as the user gave it, relative when it was; "" for a number that names none.
   const std::string& name(uint32_t file) const;
 

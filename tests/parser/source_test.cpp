@@ -47,6 +47,25 @@ TEST(Sources, OpensFilesOnce) {
   std::filesystem::remove(path);
 }
 
+TEST(Sources, WhatIsReleasedCanBeReadAgain) {
+  const std::string path = testing::TempDir() + "/whit_source_release.txt";
+  std::string text;
+  for (int i = 0; i < 5000; ++i) text += std::to_string(i) + "\n";  // 24 KB: more than one page, whatever its size is
+  std::ofstream(path) << text;
+  Sources sources;
+  std::string problem;
+  const auto file = sources.open(path, problem);
+  ASSERT_TRUE(file.has_value()) << problem;
+  const uint32_t own = sources.add_text("own", text);
+  for (const uint32_t f : {*file, own, 7u}) {
+    sources.release(f, 0, 10000);
+    sources.release(f, 10000, text.size() + 1000000);
+  }
+  EXPECT_EQ(sources.text(*file), text);
+  EXPECT_EQ(sources.text(own), text);
+  std::filesystem::remove(path);
+}
+
 TEST(Sources, EmptyFileMissingFileAndFolder) {
   const std::string path = testing::TempDir() + "/whit_source_empty.txt";
   std::ofstream(path).close();
