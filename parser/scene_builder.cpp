@@ -161,11 +161,11 @@ void SceneBuilder::transform_times(Statement& s) {
 }
 
 int SceneBuilder::intern(const TransformPair& pair) {
-  std::vector<TransformPair>& known = scene().transforms;
-  if (known.empty()) known.emplace_back();
+  TransformList& known = scene().transforms;
+  if (known.size() == 0) known.add({});
   const auto same = [&](const TransformPair& other) { return other.start == pair.start && other.end == pair.end; };
-  if (same(known.front())) return 0;
-  if (!same(known.back())) known.push_back(pair);
+  if (same(known[0])) return 0;
+  if (!same(known[known.size() - 1])) known.add(pair);
   return static_cast<int>(known.size() - 1);
 }
 
@@ -237,7 +237,7 @@ void SceneBuilder::begin_world(Statement& s) {
   world_missing_reported_ = false;
   SceneDescription& world = scenes_.back();
   world.world_begin = s.where;
-  world.transforms.assign(1, TransformPair());
+  world.transforms = {};
   world.camera_transform = intern(std::exchange(camera_transform_, TransformPair()));
   MaterialDescription matte;
   matte.plugin = "matte";

@@ -20,6 +20,26 @@ struct TransformPair {
   bool animated() const { return start != end; }
 };
 
+/// The transforms of a scene. Those that do not move, which is nearly all, take one matrix.
+class TransformList {
+ public:
+  size_t size() const { return entries_.size(); }
+  TransformPair operator[](size_t i) const { return {matrices_[entries_[i].start], matrices_[entries_[i].end]}; }
+  void add(const TransformPair& pair) {
+    const auto start = static_cast<uint32_t>(matrices_.size());
+    matrices_.push_back(pair.start);
+    if (pair.animated()) matrices_.push_back(pair.end);
+    entries_.push_back({start, static_cast<uint32_t>(matrices_.size() - 1)});
+  }
+
+ private:
+  struct Entry {
+    uint32_t start, end;  // indices into matrices_
+  };
+  std::vector<Mat4d> matrices_;
+  std::vector<Entry> entries_;
+};
+
 /// A statement that names a plugin: `Shape "sphere" "float radius" 1`.
 struct Entity {
   std::string plugin;   ///< "sphere"; "" when the file gives none.
@@ -70,7 +90,7 @@ struct SceneDescription {
   int camera_transform = 0;  ///< World to camera, the CTM at the Camera statement.
   double time_start = 0, time_end = 1;
 
-  std::vector<TransformPair> transforms;  ///< [0] is the identity; others deduplicated against the last used.
+  TransformList transforms;  ///< [0] is the identity; others deduplicated against the last used.
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;  ///< [0] is pbrt's default: matte with no parameters.
   std::vector<LightDescription> lights;

@@ -186,7 +186,7 @@ Vec3d transform_normal_change(const Mat4d& normal_matrix, const Vec3d& n, const 
 Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   if (h.instance[i] < 0) return Mat4d();
   const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
-  return interpolate_keys(instance.keys, h.time ? h.time[i] : 0).inverse();
+  return interpolate_keys(scene.keys_of(instance), h.time ? h.time[i] : 0).inverse();
 }
 
 /// The unit normal of derivatives that m has transformed. pbrt flips the object's normal and then transforms it, so the
@@ -298,8 +298,7 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
   for (int i = 0; i < s.n; ++i) {
     if (h.instance[i] < 0) continue;
     const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
-    const Mat4d m = interpolate_keys(instance.keys, h.time ? h.time[i] : 0);
-    const Mat4d nm = instance.moving() ? normal_matrix(m) : instance.normal_matrix;
+    const Mat4d m = interpolate_keys(scene.keys_of(instance), h.time ? h.time[i] : 0), nm = normal_matrix(m);
     const Vec3f local = s.p[i], error = s.p_error[i];
     const Vec3d p = transform_point(m, Vec3d(local));
     const auto error_of = [&](int c) {

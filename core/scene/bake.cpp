@@ -26,15 +26,27 @@ bool has_area(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 }  // namespace
 
 Mat4d normal_matrix(const Mat4d& m) {
-  Mat4d linear = m;
-  linear[3][0] = linear[3][1] = linear[3][2] = 0;
-  Mat4d out = linear.inverse().transposed();
-  double largest = 0;
+  // The inverse transpose is the matrix of cofactors over the determinant, of which only the sign matters.
+  const auto largest_of = [](const Mat4d& a) {
+    double largest = 0;
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(a[r][c]));
+    }
+    return largest;
+  };
+  const double size = 1 / largest_of(m);
+  Mat4d out;
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(out[r][c]));
+    const int r1 = (r + 1) % 3, r2 = (r + 2) % 3;
+    for (int c = 0; c < 3; ++c) {
+      const int c1 = (c + 1) % 3, c2 = (c + 2) % 3;
+      out[r][c] = (size * m[r1][c1]) * (size * m[r2][c2]) - (size * m[r1][c2]) * (size * m[r2][c1]);
+    }
   }
+  const double determinant = m[0][0] * out[0][0] + m[0][1] * out[0][1] + m[0][2] * out[0][2];
+  const double scale = (determinant < 0 ? -1 : 1) / largest_of(out);
   for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) out[r][c] /= largest;
+    for (int c = 0; c < 3; ++c) out[r][c] *= scale;
   }
   return out;
 }

@@ -42,7 +42,7 @@ class Binder {
   }
 
  private:
-  const TransformPair& transform(int i) const { return description_.transforms[static_cast<size_t>(i)]; }
+  TransformPair transform(int i) const { return description_.transforms[static_cast<size_t>(i)]; }
 
   BindContext context(const Entity& entity, const std::string& name, std::vector<int>* used_textures) {
     BindContext ctx;
@@ -169,7 +169,7 @@ class Binder {
       scene_.textures.push_back(
           bind_entity<Plugin>(t, t.spectrum ? "spectrum texture" : "float texture", {Severity::Error, nullptr, ""}));
       const auto& plugin = scene_.textures.back().plugin;
-      const Mat4d& to_world = transform(t.transform).start;
+      const Mat4d to_world = transform(t.transform).start;
       if (auto f = std::dynamic_pointer_cast<Texture<float>>(plugin)) f->texture_to_world = to_world;
       if (auto s = std::dynamic_pointer_cast<Texture<RGB>>(plugin)) s->texture_to_world = to_world;
     }

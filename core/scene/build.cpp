@@ -105,7 +105,7 @@ class Builder {
   }
 
   const SceneDescription& description() const { return *scene_->bound.description; }
-  const TransformPair& transform(int i) const { return description().transforms[static_cast<size_t>(i)]; }
+  TransformPair transform(int i) const { return description().transforms[static_cast<size_t>(i)]; }
 
   bool options_complete() const {
     const BoundScene& b = scene_->bound;
@@ -186,7 +186,7 @@ class Builder {
   void load_shape(LoadedShape& loaded, Diagnostics& diagnostics) {
     const ShapeDescription& d = description().shapes[loaded.description];
     Shape& shape = *scene_->bound.shapes[loaded.description].plugin;
-    const TransformPair& placement = transform(d.transform);
+    const TransformPair placement = transform(d.transform);
     const Mat4d to_world = placement.animated() ? Mat4d() : placement.start;
     const PrepareContext ctx = context(d.where, diagnostics);
     if (!shape.prepare(ctx)) return;
@@ -221,14 +221,15 @@ class Builder {
     };
     include(groups_[0].bounds);
     for (size_t g : moving_[-1]) {
-      const TransformPair& t = moving_transform(groups_[g]);
+      const TransformPair t = moving_transform(groups_[g]);
       include(transformed(groups_[g].bounds, t.start));
       include(transformed(groups_[g].bounds, t.end));
     }
     for (const auto& instance : description().instances) {
       const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].bounds;
-      include(transformed(object, transform(instance.transform).start));
-      include(transformed(object, transform(instance.transform).end));
+      const TransformPair t = transform(instance.transform);
+      include(transformed(object, t.start));
+      if (t.animated()) include(transformed(object, t.end));
     }
     scene_->space.scale = sane_scale(radius);
     scene_radius_ = radius * scene_->space.scale;
@@ -240,7 +241,7 @@ class Builder {
     }
   }
 
-  const TransformPair& moving_transform(const Group& g) const {
+  TransformPair moving_transform(const Group& g) const {
     if (g.shapes.empty()) return description().transforms[0];
     return transform(description().shapes[g.shapes[0].description].transform);
   }
@@ -364,6 +365,9 @@ class Builder {
   }
 
   void place_instances() {
+    // One key each, as nearly all have, so that growing does not double what is the largest part of many a scene.
+    scene_->instance_keys.reserve(description().instances.size());
+    scene_->instances.reserve(description().instances.size());
     for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])));
     for (const auto& instance : description().instances) {
       const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
@@ -387,15 +391,14 @@ class Builder {
 
   void place(const Group& group, const std::vector<Mat4d>& to_world) {
     if (group.shapes.empty() || group.accel_group == Accel::kWorld) return;
-    SceneInstance instance;
+    std::vector<Mat4d>& keys = scene_->instance_keys;
+    scene_->instances.push_back({static_cast<uint32_t>(keys.size()), static_cast<uint32_t>(to_world.size())});
     std::vector<Affine> affine;
     for (const Mat4d& key : to_world) {
-      instance.keys.push_back(group.space.to_world() * key * scene_->space.from_world());
-      affine.push_back(to_affine(instance.keys.back()));
+      keys.push_back(group.space.to_world() * key * scene_->space.from_world());
+      affine.push_back(to_affine(keys.back()));
     }
-    instance.normal_matrix = normal_matrix(instance.keys.front());
     scene_->accel->add_instance(group.accel_group, affine);
-    scene_->instances.push_back(std::move(instance));
   }
 
   // ---- Everything else ----
@@ -464,7 +467,7 @@ class Builder {
       camera.film.resolution.y = std::max(1, camera.film.resolution.y / 4);
     }
     camera.prepare(context(scene_->bound.camera.where));
-    const TransformPair& world_to_camera = transform(description().camera_transform);
+    const TransformPair world_to_camera = transform(description().camera_transform);
     const TransformPair camera_to_world{world_to_camera.start.inverse(), world_to_camera.end.inverse()};
     for (const Mat4d& key : keyframes(camera_to_world)) {
       scene_->camera_keys.push_back(key * scene_->space.from_world());

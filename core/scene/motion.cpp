@@ -79,7 +79,7 @@ std::vector<Mat4d> keyframes(const TransformPair& pair) {
   return keys;
 }
 
-Mat4d interpolate_keys(const std::vector<Mat4d>& keys, double s) {
+Mat4d interpolate_keys(std::span<const Mat4d> keys, double s) {
   if (keys.size() == 1) return keys.front();
   const double at = std::clamp(s, 0.0, 1.0) * static_cast<double>(keys.size() - 1);
   const size_t i = std::min(static_cast<size_t>(at), keys.size() - 2);

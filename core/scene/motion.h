@@ -2,6 +2,7 @@
 // interpolated linearly by ray tracer and shading alike.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -26,6 +27,6 @@ Mat4d interpolate(const TransformPair& pair, double s);
 std::vector<Mat4d> keyframes(const TransformPair& pair);
 
 /// Linear interpolation of evenly spaced keyframes at s in [0,1].
-Mat4d interpolate_keys(const std::vector<Mat4d>& keys, double s);
+Mat4d interpolate_keys(std::span<const Mat4d> keys, double s);
 
 }  // namespace whit

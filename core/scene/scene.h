@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -61,11 +62,10 @@ struct Emission {
   bool two_sided = false;
 };
 
-/// A placed object: its group's space to render space at evenly spaced times.
+/// A placed object: which of Scene::instance_keys take its group's space to render space, at evenly spaced times.
+/// Small, because a scene may have millions.
 struct SceneInstance {
-  std::vector<Mat4d> keys;
-  Mat4d normal_matrix;  ///< Inverse transpose of the only key (row-vector form), to scale; unused when moving.
-  bool moving() const { return keys.size() > 1; }
+  uint32_t first_key = 0, key_count = 0;
 };
 
 /// A light that is sampled once per shaded point: a Light plugin, or one emitting primitive of a shape.
@@ -107,6 +107,7 @@ struct Scene {
   std::vector<SceneShape> shapes;
   std::vector<Emission> emissions;
   std::vector<SceneInstance> instances;
+  std::vector<Mat4d> instance_keys;
   std::vector<SceneLight> lights;
   std::vector<const Light*> environments;  ///< Lights that escaped rays see.
   std::vector<Mat4d> camera_keys;          ///< Camera to render space at evenly spaced times.
@@ -121,6 +122,10 @@ struct Scene {
   const Filter& filter() const { return *bound.filter.plugin; }
   const Sampler& sampler() const { return *bound.sampler.plugin; }
   const Integrator& integrator() const { return *bound.integrator.plugin; }
+
+  std::span<const Mat4d> keys_of(const SceneInstance& i) const {
+    return {instance_keys.data() + i.first_key, i.key_count};
+  }
 
   size_t triangle_count() const;
   size_t geometry_bytes() const;  ///< Meshes and acceleration structure.

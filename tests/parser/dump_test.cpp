@@ -34,7 +34,8 @@ std::string dump(const SceneDescription& scene) {
   dump(out, "integrator", scene.integrator);
   dump(out, "accelerator", scene.accelerator);
   out << scene.camera_transform << " " << scene.time_start << " " << scene.time_end << "\n";
-  for (const TransformPair& t : scene.transforms) out << "transform " << t.start << t.end;
+  for (size_t i = 0; i < scene.transforms.size(); ++i)
+    out << "transform " << scene.transforms[i].start << scene.transforms[i].end;
   for (const TextureDescription& t : scene.textures) {
     dump(out, "texture", t);
     out << t.name << " " << t.spectrum << " " << t.transform << "\n";

@@ -135,7 +135,7 @@ TEST(Scenes, Objects) {
   EXPECT_EQ(scene.shapes[1].transform, 0);  // ObjectEnd restores like AttributeEnd.
   EXPECT_EQ(scene.shapes[1].material, 0);
   EXPECT_EQ(scene.instances[0].object, 0);
-  EXPECT_EQ(transform_point(scene.transforms.at(static_cast<size_t>(scene.instances[0].transform)).start, {0, 0, 0}),
+  EXPECT_EQ(transform_point(scene.transforms[static_cast<size_t>(scene.instances[0].transform)].start, {0, 0, 0}),
             Vec3d(0, 2, 0));
   EXPECT_EQ(scene.instances[1].object, 1);  // The name means the later object from then on.
 }
@@ -205,7 +205,7 @@ TEST_F(Files, IncludesAreRelativeToTheMainFileAndShareItsState) {
   const ParseResult result = parse_file(sources_, main);
   ASSERT_TRUE(result.diagnostics.all().empty());
   EXPECT_EQ(result.scenes.at(0).shapes.at(0).material, 1);
-  EXPECT_EQ(transform_point(result.scenes[0].transforms.at(1).start, {0, 0, 0}), Vec3d(1, 0, 0));
+  EXPECT_EQ(transform_point(result.scenes[0].transforms[1].start, {0, 0, 0}), Vec3d(1, 0, 0));
   EXPECT_EQ(result.scenes[0].folder, std::filesystem::absolute(folder_).lexically_normal().string());
   EXPECT_EQ(sources_.size(), 3u);  // b.pbrt is open once.
   EXPECT_GT(result.bytes, sources_.text(0).size());

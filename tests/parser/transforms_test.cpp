@@ -18,7 +18,7 @@ TransformPair last_shape_pair(const std::string& body) {
   const Parsed parsed(in_world(body + "\nShape \"s\""));
   EXPECT_FALSE(parsed.result.diagnostics.has_errors()) << parsed.messages();
   const SceneDescription& scene = parsed.scene();
-  return scene.transforms.at(static_cast<size_t>(scene.shapes.back().transform));
+  return scene.transforms[static_cast<size_t>(scene.shapes.back().transform)];
 }
 Mat4d last_shape(const std::string& body) { return last_shape_pair(body).start; }
 
@@ -77,7 +77,7 @@ TEST(Transforms, CameraStoresWorldToCamera) {
   const Parsed parsed(
       "LookAt 0 -5 1  0 0 1  0 0 1\nCamera \"perspective\"\nTranslate 9 9 9\nWorldBegin\nShape \"s\"\nWorldEnd\n");
   const SceneDescription& scene = parsed.scene();
-  const Mat4d& camera = scene.transforms.at(static_cast<size_t>(scene.camera_transform)).start;
+  const Mat4d camera = scene.transforms[static_cast<size_t>(scene.camera_transform)].start;
   EXPECT_EQ(camera, *looking_at({0, -5, 1}, {0, 0, 1}, {0, 0, 1}));
   // WorldBegin resets the CTM.
   EXPECT_EQ(scene.shapes[0].transform, 0);
@@ -95,7 +95,7 @@ TEST(Transforms, CoordinateSystems) {
   expect_clean(parsed);
   const SceneDescription& scene = parsed.scene();
   const auto origin = [&](size_t i) {
-    return transform_point(scene.transforms.at(static_cast<size_t>(scene.shapes.at(i).transform)).start, {0, 0, 0});
+    return transform_point(scene.transforms[static_cast<size_t>(scene.shapes.at(i).transform)].start, {0, 0, 0});
   };
   expect_near(origin(0), {0, -5, 1});
   EXPECT_EQ(origin(1), Vec3d(1, 0, 0));
@@ -160,7 +160,7 @@ TEST(Transforms, Singular) {
 TEST(Transforms, SingularStatementsAreErrorsAndChangeNothing) {
   const Parsed parsed(in_world("Translate 1 0 0\n  Scale 1 0 1\nShape \"s\""));
   expect_only(parsed, Severity::Error, 3, 3, "Scale makes a matrix that cannot be inverted");
-  EXPECT_EQ(transform_point(parsed.scene().transforms.at(1).start, {0, 0, 0}), Vec3d(1, 0, 0));
+  EXPECT_EQ(transform_point(parsed.scene().transforms[1].start, {0, 0, 0}), Vec3d(1, 0, 0));
   expect_only(Parsed(in_world("Transform [ 1 0 0 0  0 1 0 0  0 0 0 0  0 0 0 1 ]")), Severity::Error, 2, 1, "Transform");
   expect_only(Parsed(in_world("Rotate 30 0 0 0")), Severity::Error, 2, 8, "axis of length zero");
   // Overflow by repetition is found where it happens.

@@ -73,6 +73,19 @@ TEST(NormalMatrix, IsOfOrdinarySizeWhateverTheScale) {
   }
 }
 
+TEST(NormalMatrix, IsTheInverseTransposeButForItsScale) {
+  // Sheared, and mirrored or not. The largest entry of the result is 1 or -1.
+  for (const double z : {3.0, -3.0}) {
+    const Mat4d m(1, 2, 0.5, 0, -1, 0.25, 1, 0, 0, 1, z, 0, 7, 8, 9, 1);
+    const Mat4d n = normal_matrix(m), expected = m.inverse().transposed();
+    double largest = 0;
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) largest = std::max(largest, std::abs(expected[r][c]));
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(n[r][c], expected[r][c] / largest, 1e-14) << r << c;
+  }
+}
+
 TEST(MeshBounds, AreThoseOfTheTransformedPoints) {
   const std::vector<double> points = {1, 0, 0, -2, 3, 0, 0, 0, 4};
   const Box3d box =
