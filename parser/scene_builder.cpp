@@ -96,7 +96,7 @@ void SceneBuilder::change_ctm(const Statement& s, const Mat4d& m, bool concatena
   TransformPair changed = state_.ctm;
   if (state_.start_active) changed.start = concatenate ? m * state_.ctm.start : m;
   if (state_.end_active) changed.end = concatenate ? m * state_.ctm.end : m;
-  if (!is_regular(changed.start) || !is_regular(changed.end)) {
+  if (!is_regular(changed.start) || (changed.animated() && !is_regular(changed.end))) {
     reporter_.error(s.where, std::string(s.row->name) + " makes a matrix that cannot be inverted",
                     "nothing may be scaled to zero or infinity");
     return;
