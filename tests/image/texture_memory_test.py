@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 WHIT = os.environ.get("WHIT")
+SANITIZED = os.environ.get("WHIT_SANITIZE")
 COLUMNS, ROWS, SIDE = 10, 6, 512
 # A pyramid keeps its 8-bit level, and 1/4 + 1/16 + ... = 1/3 as many texels in halves: 3 x 512^2 x (1 + 2/3) = 1.25 MiB,
 # so all 60 take 75 MiB. Making one takes 3 x 3 x 512^2 = 2.25 MiB, so a cap of 4 leaves room for one more beside it.
@@ -81,7 +82,8 @@ class TextureMemory(unittest.TestCase):
         self.assertEqual((decodes, trims, evictions), (COLUMNS * ROWS, 0, 0))
         self.assertGreater(float(whole.std()), 0.05)
         _, one_rss, _ = self.render(self.scene, "--cropwindow", "0", "0.05", "0", "0.05")  # one texture
-        self.assertGreater(whole_rss, one_rss + 60)
+        if not SANITIZED:
+            self.assertGreater(whole_rss, one_rss + 60)
         for threads in (1, 2):
             capped, rss, (decodes, trims, evictions, peak) = self.render(
                 self.scene, "--texture-memory", str(CAP), "--nthreads", str(threads))
@@ -91,7 +93,8 @@ class TextureMemory(unittest.TestCase):
             self.assertGreater(evictions, 0)
             # One that another thread is in the middle of may be dropped, but not freed.
             self.assertLess(peak, CAP + 1.25 * (threads - 1) + 0.5)
-            self.assertLess(rss, one_rss + 12)
+            if not SANITIZED:
+                self.assertLess(rss, one_rss + 12)
 
     def test_seen_from_afar_they_all_fit(self):
         # 32 pixels see 1.1 textures of 512, so that the finest level is log2(1.1 x 16) = 4, of 32 x 32 texels: all 60
