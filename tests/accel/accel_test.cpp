@@ -184,9 +184,7 @@ TEST(Accel, EveryInstructionSetFindsTheSame) {
       const bool on_plate = std::abs((static_cast<float>(i) + 0.5f) / 37 - 0.5f) < 0.2f;
       EXPECT_EQ(rays.shape[i], !usable ? -1 : on_plate ? 1 : 0) << set << " ray " << i;
       EXPECT_EQ(rays.blocked[i], usable ? 1 : 0) << set << " ray " << i;
-      if (usable) {
-        EXPECT_FLOAT_EQ(rays.t[i], on_plate ? 2 : 3) << set << " ray " << i;
-      }
+      if (usable) { EXPECT_FLOAT_EQ(rays.t[i], on_plate ? 2 : 3) << set << " ray " << i; }
     }
   }
 }

@@ -153,7 +153,7 @@ TEST(Scenes, TransformBlocksMayCrossOthers) {
   // pbrt-v3 has a stack of transforms and one of the rest: an end takes from them what lies on top.
   const auto x_of = [](const SceneDescription& scene, size_t shape) {
     const auto transform = static_cast<size_t>(scene.shapes.at(shape).transform);
-    return transform_point(scene.transforms.at(transform).start, {0, 0, 0}).x;
+    return transform_point(scene.transforms[transform].start, {0, 0, 0}).x;
   };
   const std::string shape = "Shape \"s\"\n";
   const Parsed transform_first(
