@@ -120,8 +120,12 @@ void MipMap::add_levels(Texels texels, bool as_half, float scale) {
     level->storage = as_half ? Storage::Halves : Storage::Floats;
     const bool last = texels.width == 1 && texels.height == 1;
     Texels coarser = last ? Texels{} : halve(texels, wrap_);
-    if (as_half) level->halves.assign(texels.values.begin(), texels.values.end());
-    else level->floats = std::move(texels.values);
+    if (as_half) {
+      level->halves.reserve(texels.values.size() + 1);  // lookups read a texel of three as four
+      level->halves.assign(texels.values.begin(), texels.values.end());
+    } else {
+      level->floats = std::move(texels.values);
+    }
     if (last) return;
     texels = std::move(coarser);
   }

@@ -93,6 +93,7 @@ class MipMap {
   template <int C>
   using Value = std::array<float, C>;
   struct Ellipse;
+  struct RowWeights;
   template <int C, WrapMode W>
   class Sampler;
 

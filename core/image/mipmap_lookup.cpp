@@ -1,8 +1,14 @@
 // The filters of MipMap, one point at a time inside loops over a batch.
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
+#include "core/base/fastmath.h"
 #include "core/image/mipmap.h"
 
 namespace whit {
@@ -10,10 +16,10 @@ namespace {
 
 constexpr int kWeights = 128;
 
-// exp(-2 r^2) - exp(-2): a Gaussian that reaches 0 on the ellipse, tabulated over r^2 in [0, 1].
-const std::array<float, kWeights>& ewa_weights() {
-  static const std::array<float, kWeights> table = [] {
-    std::array<float, kWeights> w{};
+// exp(-2 r^2) - exp(-2): a Gaussian that reaches 0 on the ellipse, tabulated over r^2 in [0, 1); 0 from there on.
+const std::array<float, kWeights + 1>& ewa_weights() {
+  static const std::array<float, kWeights + 1> table = [] {
+    std::array<float, kWeights + 1> w{};
     for (int i = 0; i < kWeights; ++i)
       w[i] = std::exp(-2.0f * (static_cast<float>(i) / (kWeights - 1))) - std::exp(-2.0f);
     return w;
@@ -21,14 +27,46 @@ const std::array<float, kWeights>& ewa_weights() {
   return table;
 }
 
-float lerp(float x, float a, float b) { return (1 - x) * a + x * b; }
-
 // Index i of a side of n texels, n a power of two; -1 stands for black.
 template <WrapMode W>
 int wrap_texel(int i, int n) {
   if constexpr (W == WrapMode::Repeat) return i & (n - 1);
   if constexpr (W == WrapMode::Clamp) return std::clamp(i, 0, n - 1);
   if constexpr (W == WrapMode::Black) return i >= 0 && i < n ? i : -1;
+}
+
+// One texel as the processor adds it: three channels in a vector of four (a GCC and Clang extension), or one alone.
+using Vector4 = float __attribute__((vector_size(16)));
+template <int C>
+using Texel = std::conditional_t<C == 1, float, Vector4>;
+
+template <int C>
+std::array<float, C> to_value(const Texel<C>& t) {
+  if constexpr (C == 1) return {t};
+  else return {t[0], t[1], t[2]};
+}
+
+template <int C>
+Texel<C> decode_texel(const uint8_t* bytes, const float* table) {
+  if constexpr (C == 1) return table[bytes[0]];
+  else return Vector4{table[bytes[0]], table[bytes[1]], table[bytes[2]], 0};
+}
+
+template <int C>
+Texel<C> load_texel(const float* floats) {
+  if constexpr (C == 1) return floats[0];
+  else return Vector4{floats[0], floats[1], floats[2], 0};
+}
+
+// With three channels reads a fourth number, the next texel's or the padding's.
+template <int C>
+Texel<C> load_texel(const Imath::half* halves) {
+  if constexpr (C == 1) return static_cast<float>(halves[0]);
+#ifdef __F16C__
+  else return _mm_cvtph_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(halves)));
+#else
+  else return Vector4{float(halves[0]), float(halves[1]), float(halves[2]), 0};
+#endif
 }
 
 }  // namespace
@@ -61,6 +99,22 @@ struct MipMap::Ellipse {
     s1 = good ? static_cast<int>(std::floor(s + half_s)) : -1;
     t0 = good ? static_cast<int>(std::ceil(t - half_t)) : 0;
     t1 = good ? static_cast<int>(std::floor(t + half_t)) : -1;
+  }
+};
+
+// Where the texels of a stretch of a row lie in the table of weights, computed together.
+struct MipMap::RowWeights {
+  static constexpr int kLanes = 8;
+  int32_t index[kLanes];
+
+  RowWeights(const Ellipse& e, int x0, int y) {
+    const float tt = static_cast<float>(y) - e.t, b = e.B * tt, c = e.C * tt * tt;
+#pragma omp simd
+    for (int k = 0; k < kLanes; ++k) {
+      const float ss = static_cast<float>(x0 + k) - e.s;
+      // Rounding can leave it a hair below 0.
+      index[k] = static_cast<int32_t>(clamp_to((e.A * ss + b) * ss + c, 0.0f, 1.0f) * kWeights);
+    }
   }
 };
 
@@ -183,32 +237,50 @@ class MipMap::Sampler {
     }
   }
 
+  // The weighted mean of the texels in an ellipse. Where all texels are finite those outside are not skipped but weigh
+  // nothing: a branch that goes wrong at both ends of every row takes longer than they do.
   Value<C> ewa_level(int level, float s, float t, const float (&d0)[2], const float (&d1)[2]) {
     const Level& l = use(level);
     const Ellipse e(l, s, t, d0, d1);
-    const float* const weights = ewa_weights().data();
-    float weight_sum = 0;
-    Value<C> sum = with_fetch(l, [&](const auto& fetch) {
-      Value<C> total{};
-      for (int y = e.t0; y <= e.t1; ++y) {
-        const float tt = static_cast<float>(y) - e.t;
-        const int row = wrap_texel<W>(y, l.height);
-        for (int x = e.s0; x <= e.s1; ++x) {
-          const float ss = static_cast<float>(x) - e.s;
-          const float r2 = e.A * ss * ss + e.B * ss * tt + e.C * tt * tt;
-          if (!(r2 < 1)) continue;
-          // Rounding can leave r2 a hair below 0.
-          const float weight = weights[static_cast<int>(std::max(r2, 0.0f) * kWeights)];
-          weight_sum += weight;
-          const int column = wrap_texel<W>(x, l.width);
-          if (W != WrapMode::Black || (row >= 0 && column >= 0))
-            add(total, weight, fetch(static_cast<size_t>(row) * l.width + column));
+    const auto table = map_.byte_values_.data();
+    float weights = 0;
+    Texel<C> sum{};
+    switch (l.storage) {
+      case Storage::Bytes:
+        sum = weigh<true>(e, l, weights, [&](size_t i) { return decode_texel<C>(l.bytes.data() + i * C, table); });
+        break;
+      case Storage::Halves:
+        sum = weigh<true>(e, l, weights, [&](size_t i) { return load_texel<C>(l.halves.data() + i * C); });
+        sum *= map_.gain_;
+        break;
+      case Storage::Floats:
+        sum = weigh<false>(e, l, weights, [&](size_t i) { return load_texel<C>(l.floats.data() + i * C); });
+        break;
+    }
+    if (!(weights > 0)) return bilinear(level, s, t);
+    return to_value<C>(sum / weights);
+  }
+
+  template <bool kFinite, class Fetch>
+  static Texel<C> weigh(const Ellipse& e, const Level& l, float& weight_sum, const Fetch& fetch) {
+    const float* const table = ewa_weights().data();
+    Texel<C> sum{};
+    float weights = 0;
+    for (int y = e.t0; y <= e.t1; ++y) {
+      const int row = wrap_texel<W>(y, l.height);
+      const size_t row_start = static_cast<size_t>(row) * l.width;
+      for (int x0 = e.s0; x0 <= e.s1; x0 += RowWeights::kLanes) {
+        const RowWeights w(e, x0, y);
+        for (int k = 0; k < std::min(RowWeights::kLanes, e.s1 - x0 + 1); ++k) {
+          const float weight = table[w.index[k]];
+          if (!kFinite && weight == 0) continue;
+          weights += weight;
+          const int column = wrap_texel<W>(x0 + k, l.width);
+          if (W != WrapMode::Black || (row >= 0 && column >= 0)) sum += weight * fetch(row_start + column);
         }
       }
-      return total;
-    });
-    if (!(weight_sum > 0)) return bilinear(level, s, t);
-    for (int c = 0; c < C; ++c) sum[c] /= weight_sum;
+    }
+    weight_sum = weights;
     return sum;
   }
 

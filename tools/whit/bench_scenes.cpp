@@ -121,9 +121,9 @@ void write_tiles(const std::string& path) {
   if (!result.ok()) throw std::runtime_error(result.error);
 }
 
-/// Gently rolling ground of 480,000 triangles to the horizon, one texture all over it.
+/// Gently rolling ground of a million triangles to the horizon, one texture all over it.
 std::string floor_scene(const std::string& texture) {
-  constexpr int kColumns = 400, kRows = 600;
+  constexpr int kColumns = 700, kRows = 715;
   std::string p, uv, indices;
   for (int j = 0; j <= kRows; ++j) {
     // Rows are spaced as the picture's are, so that triangles are of like size on the screen.
