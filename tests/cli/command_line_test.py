@@ -427,6 +427,17 @@ class Commands(Case):
         self.fails(4, "cannot read image", "diff", "a scene.pbrt", a)
         self.fails(2, "reference is required", "diff", a)
 
+    def test_bench_of_reading(self):
+        figures = json.loads(self.good("bench", "--only", "ingestion", "--runs", "3", "--text-mb", "2", "--json"))
+        self.assertEqual(figures["scenes"], [])
+        figures = figures["ingestion"]
+        self.assertGreater(figures["text_megabytes"], 2)
+        for name in ("text_mb_per_s", "ply_mb_per_s", "build_mtris_per_s"):
+            low, high = figures[name + "_spread"]
+            self.assertTrue(0 < low <= figures[name] <= high, name)
+        self.assertRegex(self.good("bench", "--only", "ingestion", "--runs", "1", "--text-mb", "2"),
+                         r"(?s)\d MB/s .*\d MB/s .*\d Mtri/s ")
+
     def test_fmt_and_cat(self):
         self.write("messy.pbrt", SCENE.replace("  ", "\t\t ").replace("[2]", "2 # two"))
         once = self.good("fmt", "messy.pbrt")

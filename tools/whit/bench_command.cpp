@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "core/accel/accel.h"
+#include "tools/whit/bench_ingestion.h"
 #include "tools/whit/bench_measure.h"
 #include "tools/whit/bench_scenes.h"
 #include "tools/whit/command_line.h"
@@ -58,36 +59,56 @@ void print_row(const nlohmann::json& j) {
   fmt::print("            {}\n", stages);
 }
 
+void print_ingestion(const Ingestion& i) {
+  const auto line = [](const std::string& what, const Spread& s, const char* unit, int digits) {
+    fmt::print("{:<45} {:>8.{}f} {} ({:.{}f}-{:.{}f})\n", what, s.median, digits, unit, s.low, digits, s.high, digits);
+  };
+  line(fmt::format("scene text, {:.0f} MB of inline meshes", i.text_megabytes), i.text_mb_per_s, "MB/s", 0);
+  line(fmt::format("a PLY mesh, binary, {:.0f} MB", i.ply_megabytes), i.ply_mb_per_s, "MB/s", 0);
+  line(fmt::format("its {:.2f} M triangles, made traceable", i.triangles / 1e6), i.build_mtris_per_s, "Mtri/s", 2);
+}
+
 }  // namespace
 
 int bench_command(const Arguments& args) {
   std::vector<std::string> files, only;
   bool as_json = false;
   BenchSettings settings;
-  CLI::App app("Measures rendering speed on built-in scenes, and on any given.", "whit bench");
+  IngestionSettings reading;
+  CLI::App app("Measures the speed of reading, and of rendering built-in scenes and any given.", "whit bench");
   app.add_option("scenes", files, "Scene files to measure too");
-  app.add_option("--only", only, "Of the built-in scenes, measure these")->delimiter(',');
+  app.add_option("--only", only, "Measure these built-in scenes alone; 'ingestion' is the reading")->delimiter(',');
+  app.add_option("--text-mb", reading.text_megabytes, "Megabytes of scene text to read")->check(CLI::Range(1.0, 1e5));
   app.add_option("--runs", settings.runs, "Counted runs of each measurement")->check(CLI::Range(1, 100));
   app.add_flag("--json", as_json, "Print the figures as JSON");
   int code = kDone;
   if (!parse_arguments(app, args, code)) return code;
-  nlohmann::json rows = nlohmann::json::array();
+  const auto wanted = [&](const std::string& name) {
+    return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
+  };
+  nlohmann::json rows = nlohmann::json::array(), report;
   const auto add = [&](const std::string& name, Sources& sources, LoadedFile file) {
     Diagnostics& d = file.parsed.diagnostics;
     for (const SceneDescription& world : file.parsed.scenes) {
       if (d.has_errors()) break;
       const nlohmann::json row = measure_scene(name, file, world, sources, settings, d);
       if (row.is_null()) break;
-      rows.push_back(row);
+      if (!as_json && rows.empty()) print_heading(settings.runs);
       if (!as_json) print_row(row);
+      rows.push_back(row);
     }
     print_diagnostics(sources, d);
     if (d.has_errors()) code = exit_code(d);
   };
-  if (!as_json) print_heading(settings.runs);
   const TemporaryFolder folder;
+  if (wanted("ingestion")) {
+    reading.runs = settings.runs;
+    const Ingestion ingestion = measure_ingestion(folder.path(), reading);
+    report["ingestion"] = to_json(ingestion);
+    if (!as_json) print_ingestion(ingestion);
+  }
   for (const BenchScene& scene : bench_scenes()) {
-    if (!only.empty() && std::find(only.begin(), only.end(), scene.name) == only.end()) continue;
+    if (!wanted(scene.name)) continue;
     Sources sources;
     add(scene.name, sources, load_text(sources, scene.name, scene.text(folder.path())));
   }
@@ -95,7 +116,8 @@ int bench_command(const Arguments& args) {
     Sources sources;
     add(path, sources, load_file(sources, path));
   }
-  if (as_json) fmt::print("{}\n", nlohmann::json{{"scenes", rows}}.dump(1));
+  report["scenes"] = rows;
+  if (as_json) fmt::print("{}\n", report.dump(1));
   return code;
 }
 
