@@ -49,7 +49,8 @@ class TexturedAlpha final : public AlphaTest {
 }  // namespace
 
 std::unique_ptr<AlphaTest> make_alpha_test(const SceneShape& geometry, const Shape& shape) {
-  const bool whole = shape.alpha.is_constant() && shape.shadow_alpha.is_constant() && shape.shadow_alpha.value() != 0;
+  const bool whole = shape.alpha.is_constant() && shape.alpha.value() != 0 && shape.shadow_alpha.is_constant() &&
+                     shape.shadow_alpha.value() != 0;
   if (whole) return nullptr;
   return std::make_unique<TexturedAlpha>(geometry, shape);
 }

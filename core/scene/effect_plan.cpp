@@ -61,21 +61,22 @@ class Planner {
     const ShapeDescription& d = description_.shapes[i];
     const auto& shape = scene_.shapes[i];
     if (!shape.plugin || (d.object >= 0 && !plan_.object_live[static_cast<size_t>(d.object)])) return;
-    // A constant alpha of 0 is a shape that is not there.
-    if (shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0) return;
+    const bool emits = d.area_light >= 0 && scene_.area_lights[static_cast<size_t>(d.area_light)].plugin;
+    // A constant alpha of 0 is a shape that is not there, or that lights unseen.
+    const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0;
+    if (unseen && !(emits && d.object < 0 && !animated(d.transform))) return;
     plan_.shape_live[i] = 1;
     call_for(shape.plugin->effects(), d.where, d.plugin);
-    const bool cut = !shape.plugin->alpha.is_constant() || !shape.plugin->shadow_alpha.is_constant() ||
+    const bool cut = unseen || !shape.plugin->alpha.is_constant() || !shape.plugin->shadow_alpha.is_constant() ||
                      shape.plugin->shadow_alpha.value() == 0;
     if (cut) call_for({Effect::AlphaMask}, d.where, d.plugin);
     visit_textures(shape.textures);
     if (animated(d.transform)) call_for({Effect::MotionBlur}, d.where, "moving " + d.plugin);
-    const bool emits = d.area_light >= 0 && scene_.area_lights[static_cast<size_t>(d.area_light)].plugin;
     if (emits) {
       call_for({Effect::AreaLight}, description_.area_lights[static_cast<size_t>(d.area_light)].where,
                description_.area_lights[static_cast<size_t>(d.area_light)].plugin);
     }
-    visit_material(scene_.shape_material[i]);
+    if (!unseen) visit_material(scene_.shape_material[i]);
   }
 
   void visit_material(int index) {

@@ -130,6 +130,16 @@ TEST(AreaLightSide, ASphereShinesOutwardsOrInwards) {
   }
 }
 
+TEST(AreaLightSide, AnEmitterWithAlphaZeroLightsUnseen) {
+  for (const bool reverse : {false, true}) {
+    const std::string light = light_of(kPlacements[0], reverse, kSquare + " \"float alpha\" 0");
+    EXPECT_EQ(lit(light), lit(light_of(kPlacements[0], reverse, kSquare)));
+    // What a camera behind it sees is the wall in front, and from farther away a little more of it.
+    EXPECT_NEAR(seen(light, 1, false), seen(light, -1, false), 0.002);
+    EXPECT_NEAR(seen(light, -1, true), seen(light, 1, true), 0.002);
+  }
+}
+
 TEST(AreaLightSide, TwoSidedMeansBoth) {
   for (const Placement& p : kPlacements) {
     for (const std::string& shape : {kSquare, std::string("Shape \"disk\" \"float radius\" 1")}) {

@@ -122,6 +122,22 @@ TEST(EffectPlan, AShapeWithAlphaZeroIsNotThere) {
   EXPECT_FALSE(planned.plan.live(Effect::Mirror));
 }
 
+TEST(EffectPlan, AnEmitterWithAlphaZeroIsKeptForItsLight) {
+  // As in pbrt-v3, where it lights and cannot be seen. Its material is not needed.
+  const std::string invisible =
+      "Material \"mirror\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0] \"float "
+      "alpha\" 0 ";
+  const std::string light = "AreaLightSource \"diffuse\" ";
+  const Planned planned(scene(light + invisible));
+  EXPECT_EQ(planned.plan.shape_live, (std::vector<uint8_t>{1, 1}));
+  EXPECT_TRUE(planned.plan.live(Effect::AreaLight));
+  EXPECT_TRUE(planned.plan.live(Effect::AlphaMask));
+  EXPECT_FALSE(planned.plan.live(Effect::Mirror));
+  // What moves lights nothing, so there is nothing to keep.
+  const Planned moving(scene(light + "ActiveTransform EndTime Translate 1 0 0 " + invisible));
+  EXPECT_EQ(moving.plan.shape_live, (std::vector<uint8_t>{1, 0}));
+}
+
 TEST(EffectPlan, ABlackLobeCallsForNothing) {
   EXPECT_EQ(effects_of(scene("Material \"perfectglass\" \"rgb Kr\" [0 0 0] Shape \"disk\"")), Effects{"refraction"});
   EXPECT_EQ(effects_of(scene("Material \"perfectglass\" \"rgb Kt\" [0 0 0] Shape \"disk\"")), Effects{"mirror"});
