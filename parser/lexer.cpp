@@ -215,13 +215,28 @@ void Lexer::report_bad_number(const char* p) {
   const Token token = scan(p);
   double value = 0;
   const bool overflow = scan_number(p, end_, value) != nullptr;
-  reporter_.error(pos(token), in_quotes(token.text) + (overflow ? " is too large for a number" : " is not a number"));
+  const bool comma = token.text.find(',') != std::string_view::npos;
+  reporter_.error(pos(token), in_quotes(token.text) + (overflow ? " is too large for a number" : " is not a number"),
+                  comma ? "numbers are separated by spaces, their digits by a point" : "");
+}
+
+/// Reads the number at p when a comma ends its token, as in "0.5, 0.5", and passes both. Null when that is not so.
+const char* Lexer::scan_before_comma(const char* p, double& value) {
+  const Token token = scan(p);
+  const char* comma = p + token.text.size() - 1;
+  if (comma <= p || *comma != ',' || scan_number(p, comma, value) != comma) return nullptr;
+  if (!comma_reported_)
+    reporter_.warning(pos(token), "a comma behind a number", "commas are passed over; numbers are separated by spaces");
+  comma_reported_ = true;
+  return comma + 1;
 }
 
 bool Lexer::read_number(double& value) {
   const Token token = peek();
   const char* p = begin_ + token.offset;
-  if (const char* behind = scan_number(p, end_, value); behind && std::isfinite(value)) {
+  const char* behind = scan_number(p, end_, value);
+  if (!behind) behind = scan_before_comma(p, value);
+  if (behind && std::isfinite(value)) {
     consume_to(behind);
     return true;
   }
@@ -251,6 +266,7 @@ bool Lexer::read_numbers(std::vector<double>& out) {
     if (p == end_ || !is(*p, kNumberStart)) break;
     double value;
     const char* behind = scan_number(p, end_, value);
+    if (!behind) behind = scan_before_comma(p, value);
     if (!behind || !(std::abs(value) <= std::numeric_limits<double>::max())) {
       end_list(last, p);
       report_bad_number(p);
@@ -267,6 +283,7 @@ bool Lexer::read_numbers(std::vector<double>& out) {
 bool Lexer::read_odd_integer(const char* p, const char*& behind, int32_t& value, bool& warned) {
   double number = 0;
   behind = scan_number(p, end_, number);
+  if (!behind) behind = scan_before_comma(p, number);
   const Token token = scan(p);
   if (!behind) {
     report_bad_number(p);

@@ -57,7 +57,7 @@ class Lexer {
   bool read_number(double& value);
 
   /// Appends every number up to the first token that is none. False when one is malformed or not finite:
-  /// reported, and left where it is.
+  /// reported, and left where it is. A comma right behind a number is passed over, as by pbrt, with a warning.
   bool read_numbers(std::vector<double>& out);
 
   /// The same for 32-bit integers. A fraction is cut off, as pbrt does, with one warning a list; a number
@@ -79,6 +79,7 @@ class Lexer {
   void consume_to(const char* p);
   void end_list(const char* last, const char* p);
   void report_bad_number(const char* p);
+  const char* scan_before_comma(const char* p, double& value);
   bool read_odd_integer(const char* p, const char*& behind, int32_t& value, bool& warned);
   /// Where reading goes on: the token peeked at, or behind the last one consumed.
   const char* cursor() const { return begin_ + (peeked_valid_ ? peeked_.offset : consumed_); }
@@ -92,6 +93,7 @@ class Lexer {
   uint64_t consumed_ = 0;
   Token peeked_;
   bool peeked_valid_ = false;
+  bool comma_reported_ = false;
   std::vector<Token>* comments_ = nullptr;
   const char* next_close_ = nullptr;  ///< The first ] at or behind the place where one was last looked for.
 };

@@ -59,6 +59,16 @@ TEST(Parameters, FractionOfAnInteger) {
   EXPECT_EQ(parsed.scene().shapes[0].params[0].integers(), (std::vector<int32_t>{1, 2, 3}));
 }
 
+TEST(Parameters, CommasBehindNumbers) {
+  // strtod() of pbrt's stops at them; one warning a file is enough.
+  const Parsed parsed(in_world("Translate 1, -2., 3\nShape \"s\" \"rgb c\" [ 1, .5, 2e1 ] \"integer n\" [ 1, 2, 3,]"));
+  expect_only(parsed, Severity::Warning, 2, 11, "comma", "passed over");
+  const ShapeDescription& shape = parsed.scene().shapes.at(0);
+  EXPECT_EQ(shape.params.at(0).numbers(), (std::vector<double>{1, 0.5, 20}));
+  EXPECT_EQ(shape.params.at(1).integers(), (std::vector<int32_t>{1, 2, 3}));
+  EXPECT_EQ(transform_point(parsed.scene().transforms.at(1).start, {0, 0, 0}), Vec3d(1, -2, 3));
+}
+
 TEST(Parameters, StrangeBool) {
   const Parsed parsed = shape("\"bool b\" \"maybe\"");
   expect_only(parsed, Severity::Warning, 2, 20, "\"maybe\"", "\"false\" is used");
@@ -131,6 +141,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"\"float r\" [ 1 nan ]", 25, "\"nan\" is not a number", ""},
                     Mistake{"\"float r\" inf", 21, "\"inf\" is not a number", ""},
                     Mistake{"\"float r\" [ 1 1.5x ]", 25, "\"1.5x\" is not a number", ""},
+                    Mistake{"\"float r\" [1,5 2]", 22, "\"1,5\" is not a number", "spaces"},
+                    Mistake{"\"float r\" [1 1.5x, 2]", 24, "\"1.5x,\" is not a number", ""},
+                    Mistake{"\"float r\" [1 , 2]", 24, "\",\" is not a number", ""},
                     Mistake{"\"float r\" 1e999", 21, "too large", ""},
                     Mistake{"\"integer r\" [ 1 3000000000 ]", 27, "out of range", ""},
                     Mistake{"\"float r\" 1 2", 21, "without brackets", "[ and ]"},
