@@ -204,7 +204,7 @@ std::string Lexer::unquote(const Token& token) {
       ++i;
     } else if (inner[i] == '\\') {
       reporter_.error(pos(token.offset + 1 + i), "unknown escape " + in_quotes(inner.substr(i, 2)) + " in a string",
-                      "write \\\\ for a backslash");
+                      "write / between folders, and \\\\ for a backslash");
     }
     out += inner[i] == '\\' && escaped == '\0' ? '\\' : escaped;
   }
