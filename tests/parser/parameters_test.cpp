@@ -66,7 +66,7 @@ TEST(Parameters, CommasBehindNumbers) {
   const ShapeDescription& shape = parsed.scene().shapes.at(0);
   EXPECT_EQ(shape.params.at(0).numbers(), (std::vector<double>{1, 0.5, 20}));
   EXPECT_EQ(shape.params.at(1).integers(), (std::vector<int32_t>{1, 2, 3}));
-  EXPECT_EQ(transform_point(parsed.scene().transforms.at(1).start, {0, 0, 0}), Vec3d(1, -2, 3));
+  EXPECT_EQ(transform_point(parsed.scene().transforms[1].start, {0, 0, 0}), Vec3d(1, -2, 3));
 }
 
 TEST(Parameters, StrangeBool) {
