@@ -64,7 +64,10 @@ class Binder {
 
   const PluginInfo* find(const Entity& entity, const std::string& category, const Unknown& unknown) {
     if (const PluginInfo* info = find_plugin(category, entity.plugin)) return info;
-    std::string remedy = did_you_mean(entity.plugin, plugin_names(category));
+    std::string remedy = entity.plugin == "ptex"
+                             ? "it needs the Ptex library, of which Debian 12 has no package; bake the "
+                               "texture to a picture and use \"imagemap\""
+                             : did_you_mean(entity.plugin, plugin_names(category));
     if (unknown.severity == Severity::Warning) {
       if (!remedy.empty()) remedy += ' ';
       remedy += unknown.consequence;

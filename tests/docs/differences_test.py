@@ -277,6 +277,15 @@ class Differences(unittest.TestCase):
         self.assertEqual(self.run_whit("s.pbrt", "--quiet").returncode, 0)
         self.assertEqual(sorted(os.listdir(self.folder)), ["s.exr", "s.pbrt", "s.png"])
 
+    def test_ptex_is_refused(self):
+        text = 'WorldBegin\nTexture "t" "spectrum" "ptex" "string filename" ["s.pbrt"]\nWorldEnd\n'
+        with open(os.path.join(self.folder, "s.pbrt"), "w", encoding="utf-8") as f:
+            f.write(text)
+        done = self.run_whit("s.pbrt", "--quiet")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn('s.pbrt:2:24: error: unknown spectrum texture "ptex"', done.stderr)
+        self.assertIn("Ptex library", done.stderr)
+
     def test_pictures_of_other_formats(self):
         import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
         for name in ("map.jpg", "map.tif", "map.hdr"):
