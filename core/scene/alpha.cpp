@@ -6,7 +6,8 @@ namespace {
 /// Evaluates the two alpha textures at one point, without footprint: bilinear at full resolution, as pbrt.
 class TexturedAlpha final : public AlphaTest {
  public:
-  TexturedAlpha(const SceneShape& geometry, const Shape& shape) : geometry_(geometry), shape_(shape) {}
+  TexturedAlpha(const SceneShape& geometry, const Shape& shape, const Mat4d& group_to_render)
+      : geometry_(geometry), shape_(shape), group_to_render_(group_to_render) {}
 
   bool cut(uint32_t prim, float u, float v, const Vec3f& p, bool shadow_ray) const override {
     thread_local Arena arena;
@@ -22,7 +23,7 @@ class TexturedAlpha final : public AlphaTest {
     point.n = 1;
     point.arena = &arena;
     point.p = arena.vec3(1);
-    point.p.set(0, p);
+    point.p.set(0, Vec3f(transform_point(group_to_render_, Vec3d(p))));
     point.u = &uv.x, point.v = &uv.y;
     if (value(shape_.alpha, point) == 0) return true;
     return shadow_ray && value(shape_.shadow_alpha, point) == 0;
@@ -44,15 +45,17 @@ class TexturedAlpha final : public AlphaTest {
 
   SceneShape geometry_;
   const Shape& shape_;
+  Mat4d group_to_render_;
 };
 
 }  // namespace
 
-std::unique_ptr<AlphaTest> make_alpha_test(const SceneShape& geometry, const Shape& shape) {
+std::unique_ptr<AlphaTest> make_alpha_test(const SceneShape& geometry, const Shape& shape,
+                                           const Mat4d& group_to_render) {
   const bool whole = shape.alpha.is_constant() && shape.alpha.value() != 0 && shape.shadow_alpha.is_constant() &&
                      shape.shadow_alpha.value() != 0;
   if (whole) return nullptr;
-  return std::make_unique<TexturedAlpha>(geometry, shape);
+  return std::make_unique<TexturedAlpha>(geometry, shape, group_to_render);
 }
 
 }  // namespace whit

@@ -329,7 +329,7 @@ class Builder {
       diagnostics_.warning(d.where, "a moving shape cannot be an area light",
                            "it is shown without emission, as in pbrt");
     }
-    auto alpha = make_alpha_test(shape, plugin);
+    auto alpha = make_alpha_test(shape, plugin, group.space.to_world() * scene_->space.from_world());
     attach(group, shape, index, alpha.get());
     if (alpha) scene_->alpha_tests.push_back(std::move(alpha));
     scene_->shapes.push_back(shape);
