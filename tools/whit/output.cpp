@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <future>
 
 namespace whit {
 namespace {
@@ -54,20 +55,23 @@ std::string write_output(const OutputPlan& plan, const Picture& picture, const s
                          std::vector<std::string>& notes) {
   WriteOptions options;
   options.full_float = plan.full_float;
-  std::vector<float> encoded;
-  const auto display_pixels = [&] {
-    encoded = picture.rgb;
-    plan.display->apply(encoded.data(), encoded.size() / 3);
-    return std::span<const float>(encoded);
+  const auto write = [&](const std::string& path, std::vector<std::string>& said) {
+    std::vector<float> encoded;
+    if (!is_linear_format(path)) {
+      encoded = picture.rgb;
+      plan.display->apply(encoded.data(), encoded.size() / 3);
+    }
+    OutputImage image = to_output(picture, encoded.empty() ? picture.rgb : encoded);
+    image.metadata = metadata;
+    return write_one(path, image, options, said);
   };
-  const bool linear = is_linear_format(plan.main_file);
-  OutputImage main = to_output(picture, linear ? std::span<const float>(picture.rgb) : display_pixels());
-  main.metadata = metadata;
-  if (std::string error = write_one(plan.main_file, main, options, notes); !error.empty()) return error;
-  if (plan.display_file.empty()) return {};
-  OutputImage shown = to_output(picture, display_pixels());
-  shown.metadata = metadata;
-  return write_one(plan.display_file, shown, options, notes);
+  if (plan.display_file.empty()) return write(plan.main_file, notes);
+  // Compressing is most of it, and there is more than one core.
+  std::vector<std::string> display_notes;
+  auto display = std::async(std::launch::async, [&] { return write(plan.display_file, display_notes); });
+  const std::string error = write(plan.main_file, notes), display_error = display.get();
+  notes.insert(notes.end(), display_notes.begin(), display_notes.end());
+  return error.empty() ? display_error : error;
 }
 
 }  // namespace whit
