@@ -25,6 +25,8 @@ WorldEnd
 '''
 ORTHO = 'Camera "orthographic"'
 BEHIND = 'LookAt 0 0 0  0 0 -1  0 1 0\nCamera "orthographic"'
+# Sees what lies around the middle, from 4 to 6 off it.
+CORNERS = 'Camera "orthographic" "float screenwindow" [4 6 4 6]'
 
 
 def scene(world, camera=ORTHO, size=8, samples=16):
@@ -117,6 +119,56 @@ class Differences(unittest.TestCase):
         self.check_the_side_that_glows_lights(quad)
         self.check_the_side_that_glows_lights(quad + ' "normal N" [0 0 1 0 0 1 0 0 1 0 0 1]')
         self.check_the_side_that_glows_lights(quad + ' "normal N" [0 0 -1 0 0 -1 0 0 -1 0 0 -1]')
+        self.check_the_side_that_glows_lights(quad + ' "vector S" [1 0 0 1 0 0 1 0 0 1 0 0]')
+
+    def test_lights_of_scaled_shapes(self):
+        # A light twice as large is one of twice the radius, however that is written.
+        wall = '\nAttributeEnd\nMaterial "matte" "rgb Kd" [0.5 0.5 0.5]\nTranslate 0 0 7\nShape "disk" "float radius" [99]'
+        for shape, size in (("disk", '"float radius" [2]'), ("sphere", '"float radius" [2]'),
+                            ("cylinder", '"float radius" [2] "float zmin" [-2] "float zmax" [2]')):
+            light = 'AttributeBegin\nAreaLightSource "diffuse" "rgb L" [9 9 9]\nTranslate 0 0 3\n'
+            direct = self.render(scene(light + 'Shape "%s" %s' % (shape, size) + wall, CORNERS))
+            scaled = self.render(scene(light + 'Scale 2 2 2\nShape "%s"' % shape + wall, CORNERS))
+            self.assertGreater(float(direct.min()), 0.01)
+            numpy.testing.assert_allclose(scaled, direct, rtol=1e-4)
+
+    def test_lights_of_partial_shapes(self):
+        # Two halves of a sphere shine as much as the whole.
+        part = '''
+          AttributeBegin
+            AreaLightSource "diffuse" "rgb L" [9 9 9]
+            Translate 0 0 3
+            Shape "sphere" "float radius" [0.1] %s
+          AttributeEnd
+          Material "matte" "rgb Kd" [0.5 0.5 0.5]
+          Translate 0 0 4
+          Shape "disk" "float radius" [99]'''
+        whole, front, back = (float(self.render(scene(part % p, samples=256))[0].mean())
+                              for p in ("", '"float zmax" [0]', '"float zmin" [0]'))
+        self.assertGreater(back, 2 * front)
+        self.assertAlmostEqual((front + back) / whole, 1, delta=0.02)
+        # A ring of radii 2 and 3 at distance 1 from its axis: pi (9 / (9 + 1) - 4 / (4 + 1)) = 0.1 pi, times 0.5 / pi.
+        ring = self.render(scene('''
+          AttributeBegin
+            AreaLightSource "diffuse" "rgb L" [1 1 1]
+            Translate 0 0 1
+            Shape "disk" "float radius" [3] "float innerradius" [2]
+          AttributeEnd
+          Material "matte" "rgb Kd" [0.5 0.5 0.5]
+          Translate 0 0 2
+          Shape "disk" "float radius" [99]''', 'Camera "orthographic" "float screenwindow" [-.01 .01 -.01 .01]', samples=1024))
+        self.assertAlmostEqual(float(ring.mean()), 0.05, delta=0.001)
+
+    def test_lights_of_scaled_spaces(self):
+        # Light from everywhere has no size: pi on a wall, times 0.5 / pi. Nor has the opening of a projector.
+        wall = 'Material "matte" "rgb Kd" [0.5 0.5 0.5]\nTranslate 0 0 2\nShape "disk" "float radius" [99]'
+        sky = 'AttributeBegin\nScale %s\nLightSource "infinite"\nAttributeEnd\n' + wall
+        for size in ("1 1 1", "2 2 2", ".1 .1 .1"):
+            self.assertAlmostEqual(float(self.render(scene(sky % size, samples=256)).mean()), 0.5, delta=0.01)
+        slide = 'AttributeBegin\nScale %s\nLightSource "projection" "float fov" [90]\nAttributeEnd\n' + wall
+        beam = self.render(scene(slide % "1 1 1"))
+        self.assertGreater(float(beam.min()), 0.01)
+        numpy.testing.assert_allclose(self.render(scene(slide % "2000 2000 2000")), beam, rtol=1e-4)
 
     def test_tips_of_cones(self):
         # Seen and lit along +y, on the line of the cone that faces the camera, up to 0.001 below its tip. The normal
@@ -218,6 +270,54 @@ class Differences(unittest.TestCase):
           Shape "hyperboloid" "point p1" [1 0 1] "point p2" [-1 0 -1]'''))
         self.assertGreater(float(rgb.max()), 0.01)
 
+    def test_ribbons_that_turn_far(self):
+        # Normals 150 degrees apart, both leaning away from the camera by 75: in the middle the ribbon faces it, 0.8 wide.
+        rgb = self.render(scene('''
+          AreaLightSource "diffuse" "rgb L" [1 1 1]
+          Translate 0 0 5
+          Shape "curve" "string type" ["ribbon"] "float width" [0.8]
+            "normal N" [-.9659258 0 -.258819  .9659258 0 -.258819] "point P" [-1 0 0  -.3 0 0  .3 0 0  1 0 0]''',
+                                'Camera "orthographic" "float screenwindow" [-.01 .01 -1 1]'),
+                          said="a curve cannot light other surfaces")
+        self.assertAlmostEqual(float(rgb[..., 0].mean()), 0.4, delta=0.02)
+
+    def test_mirrored_motion(self):
+        # A camera that hardly moves sees what one that stands still sees.
+        world = '''
+          LightSource "point" "point from" [-2 1 -3] "rgb I" [9 9 9]
+          Translate .4 0 5
+          Shape "sphere" "float radius" [0.5]'''
+        still = self.render(scene(world, "Scale -1 1 1\n" + ORTHO, size=32))
+        moving = self.render(scene(world, "Scale -1 1 1\nActiveTransform EndTime\nTranslate 1e-5 0 0\n"
+                                          "ActiveTransform All\n" + ORTHO, size=32))
+        self.assertGreater(float(still[:, :16].mean()), 10 * float(still[:, 16:].mean()))
+        self.assertLess(float(abs(moving - still).mean()), 0.02 * float(still.mean()))
+
+    def reflected_checks(self, ball, uv, scale):
+        """A checkerboard behind the camera, seen in a mirror ball; filtered, with four samples a pixel."""
+        return self.render(scene('''
+          LightSource "distant" "point from" [0 0 1] "point to" [0 0 0]
+          Texture "checks" "spectrum" "checkerboard" "float uscale" [%r] "float vscale" [%r]
+          AttributeBegin
+            Material "matte" "texture Kd" "checks"
+            Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-50 -50 -3  50 -50 -3  50 50 -3  -50 50 -3]
+              "float uv" [0 0  %r 0  %r %r  0 %r]
+          AttributeEnd
+          Material "mirror"
+          Translate 0 0 5
+          %s''' % (scale, scale, uv, uv, uv, uv, ball), size=32, samples=4))
+
+    def test_footprints_of_scaled_mirrors(self):
+        direct = self.reflected_checks('Shape "sphere" "float radius" [2]', 1, 100)
+        self.assertGreater(float(direct.std()), 0.01)
+        scaled = self.reflected_checks('Scale 4 4 4\nShape "sphere" "float radius" [0.5]', 1, 100)
+        numpy.testing.assert_allclose(scaled, direct, atol=1e-3)
+
+    def test_tiny_texture_coordinates(self):
+        direct = self.reflected_checks('Shape "sphere" "float radius" [2]', 1, 100)
+        tiny = self.reflected_checks('Shape "sphere" "float radius" [2]', 2**-17, 100 * 2.0**17)
+        numpy.testing.assert_allclose(tiny, direct, atol=1e-3)
+
     def test_invalid_samples_are_counted(self):
         # A lamp whose channels add up to more than a float holds, in the middle of the picture.
         rgb = self.render(scene('''
@@ -258,6 +358,11 @@ class Differences(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
         self.assertIn('parameter "fov" of perspective is of type float, not integer', done.stderr)
 
+    def test_missing_files(self):
+        self.refused(scene('Texture "t" "spectrum" "imagemap" "string filename" "nowhere.png"'), 4, "cannot open nowhere.png")
+        self.refused(scene('LightSource "infinite" "string mapname" "nowhere.exr"'), 4, "cannot open nowhere.exr")
+        self.refused(scene('Material "metal" "spectrum eta" "nowhere.spd"'), 4, "cannot open nowhere.spd")
+
     def test_degenerate_triangles(self):
         self.render(scene('''
           LightSource "point"
@@ -271,6 +376,21 @@ class Differences(unittest.TestCase):
 
     def test_other_samplers(self):
         self.render(scene('LightSource "point"').replace("halton", "nosuchsampler"), said="halton is used instead")
+
+    def test_two_crop_windows(self):
+        text = scene('LightSource "point"').replace('Film "image"', 'Film "image" "float cropwindow" [0 0.5 0 1]')
+        self.assertEqual(self.render(text).shape, (8, 4, 3))
+        self.assertEqual(self.render(text, "--cropwindow", "0", "1", "0", "0.25").shape, (2, 8, 3))
+
+    def test_bump_maps_on_hair(self):
+        hair = '''
+          LightSource "point" "point from" [-2 1 -3] "rgb I" [9 9 9]
+          Texture "bumps" "float" "wrinkled"
+          Material "hair" %s
+          Translate 0 0 5
+          Shape "curve" "float width" [0.8] "point P" [-1 0 0  -.3 0 0  .3 0 0  1 0 0]'''
+        smooth, bumpy = self.render(scene(hair % "")), self.render(scene(hair % '"texture bumpmap" "bumps"'))
+        self.assertGreater(float(abs(bumpy - smooth).max()), 0.01 * float(smooth.max()))
 
     def test_the_name_of_the_picture(self):
         self.save(scene('LightSource "point"'))
