@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/image/oiio/module.h"
+#include "core/image/signature.h"
 
 namespace whit {
 namespace {
@@ -31,12 +32,14 @@ std::string file_problem(const std::string& path) {
   return std::strerror(errno);
 }
 
+const PictureReader& reader_of(const std::string& path) { return begins_like_a_png(path) ? kPngReader : oiio().reader; }
+
 // What `read` makes of a file, or an error that names it.
 template <class T>
-Result<T> read_file(const std::string& path, T (*Oiio::*read)(const std::string&)) {
+Result<T> read_file(const std::string& path, T (*PictureReader::*read)(const std::string&)) {
   try {
     if (std::string problem = file_problem(path); !problem.empty()) return {{}, read_error(path, problem)};
-    return {(oiio().*read)(path), ""};
+    return {(reader_of(path).*read)(path), ""};
   } catch (const std::bad_alloc&) {
     return {{}, read_error(path, "not enough memory")};
   } catch (const std::exception& e) { return {{}, read_error(path, e.what())}; }
@@ -57,10 +60,10 @@ std::vector<int> ImageInfo::rgb_channels() const {
   return {0, 0, 0};
 }
 
-Result<ImageInfo> probe_image(const std::string& path) { return read_file(path, &Oiio::probe); }
+Result<ImageInfo> probe_image(const std::string& path) { return read_file(path, &PictureReader::probe); }
 
-Result<Image> read_image(const std::string& path) { return read_file(path, &Oiio::read); }
+Result<Image> read_image(const std::string& path) { return read_file(path, &PictureReader::read); }
 
-Result<ByteImage> read_byte_image(const std::string& path) { return read_file(path, &Oiio::read_bytes); }
+Result<ByteImage> read_byte_image(const std::string& path) { return read_file(path, &PictureReader::read_bytes); }
 
 }  // namespace whit

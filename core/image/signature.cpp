@@ -42,15 +42,23 @@ bool ends_with(const std::string& path, std::string_view extension) {
                     [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
 }
 
+// The first bytes of a file; zeros when it has not that many or cannot be read.
+Bytes beginning(const std::string& path) {
+  Bytes bytes{};
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return bytes;
+  if (read(file, bytes.data(), kLength) != static_cast<ssize_t>(kLength)) bytes = {};
+  close(file);
+  return bytes;
+}
+
 }  // namespace
 
 bool begins_like_a_picture(const std::string& path) {
-  Bytes bytes{};
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  const bool read_all = read(file, bytes.data(), kLength) == static_cast<ssize_t>(kLength);
-  close(file);
-  return read_all && (is_png(bytes) || is_jpg(bytes) || is_exr(bytes) || (ends_with(path, ".tga") && is_tga(bytes)));
+  const Bytes b = beginning(path);
+  return is_png(b) || is_jpg(b) || is_exr(b) || (ends_with(path, ".tga") && is_tga(b));
 }
+
+bool begins_like_a_png(const std::string& path) { return is_png(beginning(path)); }
 
 }  // namespace whit

@@ -10,4 +10,7 @@ namespace whit {
 /// and the libraries that know all kinds take longer to load than many a scene.
 bool begins_like_a_picture(const std::string& path);
 
+/// True when the file begins as a PNG does.
+bool begins_like_a_png(const std::string& path);
+
 }  // namespace whit

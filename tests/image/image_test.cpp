@@ -7,6 +7,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "core/image/oiio/module.h"
+
 namespace whit {
 namespace {
 
@@ -166,6 +168,70 @@ TEST(ProbeImage, tells_the_size_without_reading_pixels) {
   EXPECT_EQ(r.value.height, 5);
   EXPECT_EQ(r.value.channels, 3);
   EXPECT_EQ(r.value.full_width, 7);
+}
+
+/// A PNG of the parts given as IHDR's bits and colour type, an optional palette, and the raw rows.
+std::string png_file(const std::string& name, uint8_t bits, uint8_t type, const std::string& palette,
+                     std::string rows) {
+  const auto word = [](uint32_t v) {
+    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16), static_cast<char>(v >> 8),
+                       static_cast<char>(v)};
+  };
+  const auto chunk = [&](const std::string& kind, const std::string& data) {
+    uint32_t crc = 0xffffffffu;
+    for (const char c : kind + data) {
+      crc ^= static_cast<uint8_t>(c);
+      for (int k = 0; k < 8; ++k) crc = crc & 1 ? 0xedb88320u ^ (crc >> 1) : crc >> 1;
+    }
+    return word(static_cast<uint32_t>(data.size())) + kind + data + word(~crc);
+  };
+  // One stored block of deflate: its length and the complement, little endian; Adler-32 behind it.
+  uint32_t a = 1, b = 0;
+  for (const char c : rows) a = (a + static_cast<uint8_t>(c)) % 65521, b = (b + a) % 65521;
+  const auto n = static_cast<uint16_t>(rows.size());
+  const std::string length{static_cast<char>(n), static_cast<char>(n >> 8), static_cast<char>(~n),
+                           static_cast<char>(~n >> 8)};
+  const std::string stored = std::string("\x78\x01\x01", 3) + length + rows + word(b << 16 | a);
+  const std::string header = word(2) + word(1) + std::string{static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
+  std::ofstream(temp(name), std::ios::binary)
+      << "\x89PNG\r\n\x1a\n"
+      << chunk("IHDR", header) << (palette.empty() ? "" : chunk("PLTE", palette)) << chunk("IDAT", stored)
+      << chunk("IEND", "");
+  return temp(name);
+}
+
+TEST(Png, EveryKindIsReadAsOpenImageIOReadsIt) {
+  // Two pixels in a row behind the filter's byte 0; numbers of less than 8 bits are packed from the left.
+  const auto bytes = [](std::initializer_list<int> list) { return std::string(list.begin(), list.end()); };
+  const struct {
+    uint8_t bits, type;
+    std::string palette, rows;
+    std::vector<float> pixels;
+  } cases[] = {
+      {1, 0, "", bytes({0, 0x40}), {0, 1}},
+      {4, 0, "", bytes({0, 0x3f}), {3 / 15.0f, 1}},
+      {8, 0, "", bytes({0, 51, 255}), {51 / 255.0f, 1}},
+      {16, 0, "", bytes({0, 0x12, 0x34, 0xff, 0xff}), {0x1234 / 65535.0f, 1}},
+      {8, 4, "", bytes({0, 51, 0, 255, 102}), {51 / 255.0f, 0, 1, 102 / 255.0f}},
+      {16, 4, "", bytes({0, 0x12, 0x34, 0, 0, 0, 1, 0, 2}), {0x1234 / 65535.0f, 0, 1 / 65535.0f, 2 / 65535.0f}},
+      {8, 2, "", bytes({0, 0, 51, 102, 153, 204, 255}), {0, 0.2f, 0.4f, 0.6f, 0.8f, 1}},
+      {8, 6, "", bytes({0, 0, 51, 102, 0, 153, 204, 255, 51}), {0, 0.2f, 0.4f, 0, 0.6f, 0.8f, 1, 0.2f}},
+      {8, 3, bytes({0, 51, 102, 153, 204, 255}), bytes({0, 1, 0}), {0.6f, 0.8f, 1, 0, 0.2f, 0.4f}},
+      {2, 3, bytes({0, 51, 102, 153, 204, 255}), bytes({0, 0x40}), {0.6f, 0.8f, 1, 0, 0.2f, 0.4f}},
+  };
+  for (const auto& c : cases) {
+    const std::string path = png_file("kind.png", c.bits, c.type, c.palette, c.rows);
+    const std::string what = std::to_string(c.bits) + " bits, type " + std::to_string(c.type);
+    const auto ours = read_image(path);
+    ASSERT_TRUE(ours.ok()) << what << ours.error;
+    const Image theirs = oiio().reader.read(path);
+    EXPECT_EQ(ours.value.pixels, c.pixels) << what;
+    EXPECT_EQ(theirs.pixels, c.pixels) << what;
+    EXPECT_EQ(ours.value.channel_names, theirs.channel_names) << what;
+    EXPECT_EQ(ours.value.format, theirs.format) << what;
+    EXPECT_EQ(ours.value.full_width, 2) << what;
+    if (c.bits <= 8) { EXPECT_EQ(read_byte_image(path).value.pixels, oiio().reader.read_bytes(path).pixels) << what; }
+  }
 }
 
 }  // namespace

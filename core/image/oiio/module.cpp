@@ -2,4 +2,4 @@
 #include "core/image/oiio/functions.h"
 
 extern "C" __attribute__((visibility("default")))
-const whit::Oiio whit_oiio{whit::oiio_probe, whit::oiio_read, whit::oiio_read_bytes, whit::oiio_encode};
+const whit::Oiio whit_oiio{{whit::oiio_probe, whit::oiio_read, whit::oiio_read_bytes}, whit::oiio_encode};

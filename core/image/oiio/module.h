@@ -5,18 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "core/image/decode.h"
 #include "core/image/encode.h"
-#include "core/image/image.h"
 
 namespace whit {
 
-/// The module's functions. All throw std::runtime_error with the reason, which does not name the file.
+/// The module's functions.
 struct Oiio {
-  ImageInfo (*probe)(const std::string& path);
-  Image (*read)(const std::string& path);
-  ByteImage (*read_bytes)(const std::string& path);
+  PictureReader reader;
 
-  /// The bytes of a file of that kind: "tga", "jpg", "jpeg", "tif" or "tiff".
+  /// The bytes of a file of that kind: "tga", "jpg", "jpeg", "tif" or "tiff". Throws std::runtime_error with
+  /// the reason.
   std::vector<unsigned char> (*encode)(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 };
 
