@@ -201,9 +201,12 @@ bool read_texture(const Parameter& p, const BindContext& ctx, Tex<T>& out) {
   const int index = wants_float ? ref.float_texture : ref.spectrum_texture;
   const int other = wants_float ? ref.spectrum_texture : ref.float_texture;
   const char *wanted = wants_float ? "float" : "spectrum", *found = wants_float ? "spectrum" : "float";
-  if (index < 0 && other >= 0)
-    return fail(ctx, ctx.at(p),
-                called(p, ctx) + " needs a " + wanted + " texture; \"" + ref.name + "\" is a " + found + " texture");
+  if (index < 0 && other >= 0) {
+    ctx.diagnostics->warning(
+        ctx.at(p), called(p, ctx) + " needs a " + wanted + " texture; \"" + ref.name + "\" is a " + found + " texture",
+        "it is ignored, as in pbrt-v3");
+    return true;
+  }
   if (index < 0)
     return fail(ctx, ctx.at(p), called(p, ctx) + " names an unknown " + wanted + " texture: \"" + ref.name + '"',
                 "a texture must be defined before it is used");
@@ -381,10 +384,11 @@ struct Kind<std::optional<Tex<float>>> {
   static constexpr ParamType accepts[] = {ParamType::Float, ParamType::Texture};
   static std::string text(const std::optional<Tex<float>>& v) { return v ? Kind<Tex<float>>::text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<float>>& out) {
-    Tex<float> v;
-    const size_t count = p.type == ParamType::Texture ? p.textures().size() : p.numbers().size();
+    // No value can be negative infinity: if it still is, the parameter was ignored.
+    constexpr float none = -std::numeric_limits<float>::infinity();
+    Tex<float> v(none);
     if (!Kind<Tex<float>>::read(p, ctx, range, v)) return false;
-    if (count == 1 || p.type == ParamType::Float) out = v;
+    if (!v.is_constant() || v.value() != none) out = v;
     return true;
   }
 };
@@ -426,7 +430,7 @@ struct Kind<std::optional<Tex<RGB>>> {
   static constexpr auto& accepts = Kind<Tex<RGB>>::accepts;
   static std::string text(const std::optional<Tex<RGB>>& v) { return v ? Kind<Tex<RGB>>::text(*v) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, std::optional<Tex<RGB>>& out) {
-    // No value can be negative infinity: if it still is, the parameter came without one.
+    // As above.
     const RGB none(-std::numeric_limits<float>::infinity());
     Tex<RGB> v(none);
     if (!Kind<Tex<RGB>>::read(p, ctx, range, v)) return false;

@@ -248,8 +248,15 @@ TEST_F(Binding, Textures) {
   EXPECT_FALSE(plugin.tf.is_constant());
   EXPECT_TRUE(bind(reference("ts", -1, 0)));
   EXPECT_FALSE(plugin.ts.is_constant());
-  fails(reference("tf", -1, 0), "error@20: \"tf\" of everything needs a float texture; \"wood\" is a spectrum texture");
-  fails(reference("ts", 0, -1), "error@20: \"ts\" of everything needs a spectrum texture; \"wood\" is a float texture");
+  // Of the other kind: pbrt-v3 complains and renders without it.
+  plugin.tf = Tex<float>(0.25f);
+  warns(reference("tf", -1, 0),
+        "warning@20: \"tf\" of everything needs a float texture; \"wood\" is a spectrum texture / it is ignored, as in "
+        "pbrt-v3");
+  EXPECT_EQ(plugin.tf.value(), 0.25f);
+  warns(reference("ts", 0, -1),
+        "warning@20: \"ts\" of everything needs a spectrum texture; \"wood\" is a float texture / it is ignored, as in "
+        "pbrt-v3");
   fails(reference("tf", -1, -1),
         "error@20: \"tf\" of everything names an unknown float texture: \"wood\" / a texture must be defined before it "
         "is "
