@@ -335,7 +335,7 @@ void ParameterReader::check_wavelengths(Parameter& out) {
 }
 
 /// Drops every parameter that a later one of the same name and type replaces. All ways to write a spectrum
-/// are one type here, as in pbrt.
+/// are one type here, as in pbrt. Saying the same twice, as exporters do, is not worth a warning.
 void drop_duplicates(ParameterList& list, Reporter& reporter) {
   if (list.size() < 2) return;
   const auto key = [&](size_t i) {
@@ -351,8 +351,9 @@ void drop_duplicates(ParameterList& list, Reporter& reporter) {
     const auto a = key(order[n]), b = key(order[n + 1]);
     if (std::get<0>(a) != std::get<0>(b) || std::get<1>(a) != std::get<1>(b)) continue;
     dropped[order[n]] = any = true;
-    reporter.warning(list[order[n + 1]].where, "parameter " + in_quotes(list[order[n + 1]].name) + " is given twice",
-                     "the last one is used");
+    const Parameter &first = list[order[n]], &last = list[order[n + 1]];
+    if (first.type == last.type && first.values == last.values) continue;
+    reporter.warning(last.where, "parameter " + in_quotes(last.name) + " is given twice", "the last one is used");
   }
   if (!any) return;
   ParameterList kept;

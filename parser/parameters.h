@@ -14,7 +14,7 @@ std::optional<ParamType> find_param_type(std::string_view name);
 
 /// Reads parameters up to the first token that does not belong to the list. Texture names are kept unresolved.
 /// A parameter with a mistake is reported and left out. False when the rest of the statement makes no sense
-/// and reading has to resynchronise. Of duplicates the last is kept, with a warning.
+/// and reading has to resynchronise. Of duplicates the last is kept, with a warning if it differs.
 bool read_parameters(Lexer& lexer, ParameterList& out);
 
 /// Adds parameters to a list as if they stood behind it in the file.

@@ -38,6 +38,8 @@ struct TextureRef {
   std::string name;
   int float_texture = -1;
   int spectrum_texture = -1;
+
+  bool operator==(const TextureRef&) const = default;
 };
 
 /// A parameter declaration and its values. Numbers of all vector and colour types are flat: a point3 has

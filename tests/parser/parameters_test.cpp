@@ -84,6 +84,11 @@ TEST(Parameters, Duplicates) {
   EXPECT_EQ(list[1].numbers(), (std::vector<double>{3}));
   // An rgb replaces a spectrum, but a texture is another thing than a value.
   EXPECT_EQ(shape("\"spectrum k\" [400 1] \"rgb k\" [1 1 1]").scene().shapes[0].params.size(), 1u);
+  // Exporters say the same twice; nothing is lost then.
+  const Parsed same =
+      shape("\"string mapping\" \"uv\" \"string mapping\" [\"uv\"] \"rgb c\" [1 2 3] \"color c\" [1 2 3]");
+  expect_clean(same);
+  EXPECT_EQ(same.scene().shapes[0].params.size(), 2u);
 }
 
 TEST(Parameters, WavelengthsAreSorted) {
