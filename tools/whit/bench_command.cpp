@@ -56,7 +56,7 @@ void print_row(const nlohmann::json& j) {
     const double share = j["stages"][name].get<double>();
     if (share >= 0.005) stages += fmt::format("  {} {:.0f} %", name, 100 * share);
   }
-  fmt::print("            {}\n", stages);
+  fmt::print("  {}\n", stages);
 }
 
 void print_ingestion(const Ingestion& i) {
