@@ -438,6 +438,18 @@ class Commands(Case):
         self.assertRegex(self.good("bench", "--only", "ingestion", "--runs", "1", "--text-mb", "2"),
                          r"(?s)\d MB/s .*\d MB/s .*\d Mtri/s ")
 
+    def test_bench_of_a_scene(self):
+        self.fails(2, "nosuch not in", "bench", "--only", "nosuch")
+        self.write("small.pbrt", SCENE)
+        report = json.loads(self.good("bench", "small.pbrt", "--only", "ingestion", "--runs", "1", "--text-mb", "2", "--json"))
+        scene, = report["scenes"]
+        self.assertEqual((scene["name"], scene["invalid_samples"]), ("small.pbrt", 0))
+        # A render takes its rays' time and more; the stages are shares of a whole.
+        self.assertGreater(scene["floor_ratio"], 1)
+        self.assertAlmostEqual(sum(scene["stages"].values()), 1, places=6)
+        self.assertEqual(scene["floor"]["camera"]["rays"], scene["camera_samples"])
+        self.assertGreater(scene["camera_samples_per_s_per_core"], 0)
+
     def test_fmt_and_cat(self):
         self.write("messy.pbrt", SCENE.replace("  ", "\t\t ").replace("[2]", "2 # two"))
         once = self.good("fmt", "messy.pbrt")

@@ -77,7 +77,11 @@ int bench_command(const Arguments& args) {
   IngestionSettings reading;
   CLI::App app("Measures the speed of reading, and of rendering built-in scenes and any given.", "whit bench");
   app.add_option("scenes", files, "Scene files to measure too");
-  app.add_option("--only", only, "Measure these built-in scenes alone; 'ingestion' is the reading")->delimiter(',');
+  std::vector<std::string> names{"ingestion"};
+  for (const BenchScene& scene : bench_scenes()) names.push_back(scene.name);
+  app.add_option("--only", only, "Measure these alone: built-in scenes, or 'ingestion', the reading")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
   app.add_option("--text-mb", reading.text_megabytes, "Megabytes of scene text to read")->check(CLI::Range(1.0, 1e5));
   app.add_option("--runs", settings.runs, "Counted runs of each measurement")->check(CLI::Range(1, 100));
   app.add_flag("--json", as_json, "Print the figures as JSON");
