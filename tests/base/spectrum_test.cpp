@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "core/base/cie_1931.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
@@ -83,7 +84,7 @@ TEST(Spectrum, BlackbodyScalesAndReddens) {
 class SpdFiles : public ::testing::Test {
  protected:
   std::string write(const std::string& text) {
-    const auto path = std::filesystem::path(::testing::TempDir()) / "whit_spectrum_test.spd";
+    const auto path = std::filesystem::path(test::temp_folder()) / "whit_spectrum_test.spd";
     std::ofstream(path) << text;
     return path.string();
   }

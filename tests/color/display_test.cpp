@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/base/temp_folder.h"
+
 namespace whit {
 namespace {
 
@@ -38,7 +40,7 @@ double srgb(double v) { return v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 
 
 // A config of two displays; its view "Plain" leaves values as they are, "Half" multiplies them by 0.5.
 std::string write_config() {
-  const std::string path = testing::TempDir() + "/whit_test.ocio";
+  const std::string path = test::temp_folder() + "/whit_test.ocio";
   std::ofstream(path) << "ocio_profile_version: 1\n"
                          "roles:\n  scene_linear: lin\n  default: lin\n"
                          "displays:\n"

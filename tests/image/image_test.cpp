@@ -8,11 +8,12 @@
 #include <fstream>
 
 #include "core/image/oiio/module.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
 
-std::string temp(const std::string& name) { return testing::TempDir() + "/whit_image_" + name; }
+std::string temp(const std::string& name) { return test::temp_folder() + "/whit_image_" + name; }
 
 std::string write_bytes(const std::string& name, const std::string& bytes) {
   std::ofstream(temp(name), std::ios::binary) << bytes;
@@ -141,7 +142,7 @@ TEST(ReadImage, errors_name_the_file_and_the_reason) {
     }
   };
   expect("/nowhere/x.png", "no such file");
-  expect(testing::TempDir(), "folder");
+  expect(test::temp_folder(), "folder");
   expect(write_bytes("empty.png", ""), "empty");
   expect(write_bytes("noise.png", std::string(300, 'q')), ": ");
   expect(write_bytes("noise.exr", std::string(300, 'q')), ": ");

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/base/temp_folder.h"
+
 namespace whit {
 namespace {
 
-std::string temp(const std::string& name) { return testing::TempDir() + "/whit_signature_" + name; }
+std::string temp(const std::string& name) { return test::temp_folder() + "/whit_signature_" + name; }
 
 std::string with_bytes(const std::string& name, const std::string& bytes) {
   std::ofstream(temp(name), std::ios::binary) << bytes;
@@ -32,7 +34,7 @@ TEST(Signature, of_pictures_of_all_common_kinds) {
 
 TEST(Signature, not_of_what_is_missing_short_or_something_else) {
   EXPECT_FALSE(begins_like_a_picture(temp("nowhere.png")));
-  EXPECT_FALSE(begins_like_a_picture(testing::TempDir()));
+  EXPECT_FALSE(begins_like_a_picture(test::temp_folder()));
   EXPECT_FALSE(begins_like_a_picture(with_bytes("empty.png", "")));
   EXPECT_FALSE(begins_like_a_picture(with_bytes("text.png", "WorldBegin Shape \"sphere\" WorldEnd")));
   EXPECT_FALSE(begins_like_a_picture(with_bytes("text.tga", "WorldBegin Shape \"sphere\" WorldEnd")));

@@ -9,13 +9,14 @@
 #include <thread>
 
 #include "core/image/write.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
 
 // A float picture of one value, side x side.
 std::string constant_file(const std::string& name, int side, float value) {
-  const std::string path = fmt::format("{}/whit_store_{}.pfm", testing::TempDir(), name);
+  const std::string path = fmt::format("{}/whit_store_{}.pfm", test::temp_folder(), name);
   const std::vector<float> rgb(static_cast<size_t>(side) * side * 3, value);
   OutputImage image;
   image.width = image.height = side;

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "core/image/image.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 class Write : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = testing::TempDir() + "/whit_write_" + testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = test::temp_folder() + "/whit_write_" + testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

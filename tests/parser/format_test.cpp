@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/base/temp_folder.h"
 #include "tests/parser/parser_test_support.h"
 
 namespace whit {
@@ -106,7 +107,7 @@ TEST(Format, AnOpenStringBehindAGoodStatement) {
 class FormatFiles : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = (std::filesystem::path(testing::TempDir()) /
+    folder_ = (std::filesystem::path(test::temp_folder()) /
                (std::string("whit_") + testing::UnitTest::GetInstance()->current_test_info()->name()))
                   .string();
     std::filesystem::create_directories(folder_);

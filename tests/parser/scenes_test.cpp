@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/base/temp_folder.h"
 #include "tests/parser/parser_test_support.h"
 
 namespace whit {
@@ -183,7 +184,7 @@ TEST(Scenes, AreaLightInsideAnObject) {
 class Files : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
+    folder_ = std::filesystem::path(test::temp_folder()) /
               (std::string("whit_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     std::filesystem::create_directories(folder_ / "sub");
   }

@@ -1,10 +1,13 @@
 #include "parser/source.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
@@ -34,7 +37,7 @@ TEST(Sources, PlaceInAFileLongerThanABlock) {
 }
 
 TEST(Sources, OpensFilesOnce) {
-  const std::string path = testing::TempDir() + "/whit_source_test.txt";
+  const std::string path = test::temp_folder() + "/whit_source_test.txt";
   std::ofstream(path) << "hello\n";
   Sources sources;
   std::string problem;
@@ -48,7 +51,7 @@ TEST(Sources, OpensFilesOnce) {
 }
 
 TEST(Sources, WhatIsReleasedCanBeReadAgain) {
-  const std::string path = testing::TempDir() + "/whit_source_release.txt";
+  const std::string path = test::temp_folder() + "/whit_source_release.txt";
   std::string text;
   for (int i = 0; i < 5000; ++i) text += std::to_string(i) + "\n";  // 24 KB: more than one page, whatever its size is
   std::ofstream(path) << text;
@@ -67,7 +70,7 @@ TEST(Sources, WhatIsReleasedCanBeReadAgain) {
 }
 
 TEST(Sources, EmptyFileMissingFileAndFolder) {
-  const std::string path = testing::TempDir() + "/whit_source_empty.txt";
+  const std::string path = test::temp_folder() + "/whit_source_empty.txt";
   std::ofstream(path).close();
   Sources sources;
   std::string problem;
@@ -77,7 +80,7 @@ TEST(Sources, EmptyFileMissingFileAndFolder) {
   std::filesystem::remove(path);
   EXPECT_FALSE(sources.open(path, problem).has_value());
   EXPECT_EQ(problem, "No such file or directory");
-  EXPECT_FALSE(sources.open(testing::TempDir(), problem).has_value());
+  EXPECT_FALSE(sources.open(test::temp_folder(), problem).has_value());
   EXPECT_EQ(problem, "Is a directory");
   // A device may have no end.
   EXPECT_FALSE(sources.open("/dev/zero", problem).has_value());
@@ -133,7 +136,7 @@ TEST(WhyNotText, KnowsWhatIsNoScene) {
 
 TEST(InQuotes, EscapesAndCuts) {
   EXPECT_EQ(in_quotes("a\x07"), "\"a\\x07\"");
-  EXPECT_EQ(in_quotes(std::string(100, 'x')), "\"" + std::string(60, 'x') + "...\"");
+  EXPECT_EQ(in_quotes(std::string(100, 'x')), fmt::format("\"{:x<60}...\"", ""));
 }
 
 TEST(DidYouMean, FindsSlips) {

@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "core/plugin/registry.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit {
 namespace {
@@ -78,7 +79,7 @@ class Binding : public ::testing::Test {
   Binding() {
     ctx.diagnostics = &diagnostics;
     ctx.statement_name = "everything";
-    ctx.folder = ::testing::TempDir();
+    ctx.folder = test::temp_folder();
     ctx.value_position = [](const Parameter& p, size_t i) { return SourcePos{0, p.values_at.offset + i}; };
     ctx.float_texture = [](int i) { return i == 0 ? std::make_shared<ConstantTexture<float>>() : nullptr; };
     ctx.spectrum_texture = [](int i) { return i == 0 ? std::make_shared<ConstantTexture<RGB>>() : nullptr; };
@@ -109,7 +110,7 @@ class Binding : public ::testing::Test {
     EXPECT_EQ(said(), expected);
   }
   std::string write(const char* name, const std::string& text) {
-    std::ofstream(std::filesystem::path(::testing::TempDir()) / name) << text;
+    std::ofstream(std::filesystem::path(test::temp_folder()) / name) << text;
     return name;
   }
 

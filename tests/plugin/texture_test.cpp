@@ -10,6 +10,7 @@
 #include "core/plugin/bump.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/texture_mapping.h"
+#include "tests/base/temp_folder.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/plugins/make_plugin.h"
 
@@ -201,7 +202,7 @@ TEST(Textures, ImagemapNeedsItsFile) {
 
 TEST(Textures, ImagemapIsReadWhenARayMeetsIt) {
   // Two by two texels, top row first: the bottom row is t = 0. A lookup at a texel's centre gives the texel.
-  const std::string path = ::testing::TempDir() + "whit_imagemap_test.pfm";
+  const std::string path = test::temp_folder() + "/whit_imagemap_test.pfm";
   const std::vector<float> rgb = {3, 3, 3, 4, 4, 4, 1, 1, 1, 2, 2, 2};
   OutputImage picture;
   picture.width = picture.height = 2, picture.rgb = rgb;

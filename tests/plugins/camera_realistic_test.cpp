@@ -1,6 +1,5 @@
 // The realistic camera: focus, vignetting, weights, and the same rays in every batch.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/plugin/camera.h"
+#include "tests/base/temp_folder.h"
 #include "tests/plugins/make_plugin.h"
 
 namespace whit {
@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 Parameter lens_file(const char* contents, const char* name = "lens") {
-  const std::string path = ::testing::TempDir() + "whit_" + name + "_" + std::to_string(getpid()) + ".dat";
+  const std::string path = test::temp_folder() + '/' + name + ".dat";
   std::ofstream(path) << contents;
   return text("lensfile", path);
 }

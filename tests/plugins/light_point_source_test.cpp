@@ -1,12 +1,12 @@
 // spot, goniometric and projection: where they stand, where they shine, and how much.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 
 #include "core/image/texture_store.h"
 #include "core/image/write.h"
 #include "core/plugin/light.h"
+#include "tests/base/temp_folder.h"
 #include "tests/plugins/make_plugin.h"
 
 namespace whit {
@@ -103,7 +103,7 @@ TEST(PointSources, ErrorsAreReported) {
 /// A picture of four by two texels, each with a value of its own: 1 + column + 10 row, top row first.
 Parameter map_file() {
   static const std::string path = [] {
-    const std::string p = ::testing::TempDir() + "whit_light_map_" + std::to_string(getpid()) + ".pfm";
+    const std::string p = test::temp_folder() + "/map.pfm";
     std::vector<float> pixels;
     for (int i = 0; i < 8; ++i) pixels.insert(pixels.end(), 3, static_cast<float>(1 + i % 4 + 10 * (i / 4)));
     OutputImage picture;

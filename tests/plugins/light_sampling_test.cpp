@@ -1,6 +1,5 @@
 // Lights: what arrives, from where, and that sampling, radiance and density tell the same story.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <random>
 
 #include "core/plugin/light.h"
+#include "tests/base/temp_folder.h"
 #include "tests/plugins/make_plugin.h"
 
 namespace whit {
@@ -136,8 +136,7 @@ class MapFile {
  public:
   MapFile(int width, int height, const std::function<RGB(int, int)>& texel, bool grey = false) {
     static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("whit_light_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".pfm");
+    path_ = std::filesystem::path(temp_folder()) / ("light_" + std::to_string(count++) + ".pfm");
     std::ofstream out(path_, std::ios::binary);
     out << (grey ? "Pf\n" : "PF\n") << width << ' ' << height << "\n-1.0\n";
     for (int y = height - 1; y >= 0; --y) {  // the format's first row is the bottom one

@@ -1,11 +1,11 @@
 // Shapes that are meshes: what they build, and what they refuse.
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "shape_support.h"
+#include "tests/base/temp_folder.h"
 
 namespace whit::shape_test {
 namespace {
@@ -97,8 +97,7 @@ TEST(TriangleMesh, TrianglesWithoutAreaAreLeftOutAndCounted) {
 /// A file that is there for one test.
 class TemporaryFile {
  public:
-  TemporaryFile(const char* name, const std::string& contents)
-      : path_((std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)).string()) {
+  TemporaryFile(const char* name, const std::string& contents) : path_(test::temp_folder() + '/' + name) {
     std::ofstream(path_, std::ios::binary) << contents;
   }
   ~TemporaryFile() { std::filesystem::remove(path_); }
