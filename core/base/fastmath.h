@@ -27,6 +27,10 @@ inline float min_of(float a, float b) { return a < b ? a : b; }
 inline float max_of(float a, float b) { return a > b ? a : b; }
 /// x kept within [lo, hi]; lo when x is NaN.
 inline float clamp_to(float x, float lo, float hi) { return min_of(max_of(x, lo), hi); }
+inline double clamp_to(double x, double lo, double hi) {
+  const double above = x > lo ? x : lo;
+  return above < hi ? above : hi;
+}
 /// The square root of max(x, 0).
 inline float safe_sqrt(float x) { return std::sqrt(max_of(x, 0.0f)); }
 inline float lerp(float t, float a, float b) { return (1 - t) * a + t * b; }
@@ -114,6 +118,28 @@ inline double asin_kernel(double z) {
 
 inline constexpr double kPiD = 3.14159265358979323846;
 
+/// The angle of (x, y) in (-pi, pi], error 1e-12; 0 at the origin.
+inline double atan2_kernel(double y, double x) {
+  const double ax = std::abs(x), ay = std::abs(y);
+  const double small = ax < ay ? ax : ay, large = ax < ay ? ay : ax;
+  const bool upper = small > 0.41421356237309503 * large;  // tan(pi/8): reduce by 45 degrees
+  const double num = upper ? small - large : small;
+  const double den = upper ? small + large : large;
+  const double z = num / (den > 0 ? den : 1.0), t = z * z;
+  const double p =
+      z *
+      (0.999999999999239115 +
+       t * (-0.333333332765574532 +
+            t * (0.199999930155473431 +
+                 t * (-0.142853850858703831 +
+                      t * (0.111034301559724669 +
+                           t * (-0.0899230448651733591 + t * (0.0697306111496183722 + t * -0.0376347887053254317)))))));
+  const double octant = upper ? p + 0.25 * kPiD : p;
+  const double quadrant = ax < ay ? 0.5 * kPiD - octant : octant;
+  const double half = x < 0 ? kPiD - quadrant : quadrant;
+  return y < 0 ? -half : half;
+}
+
 }  // namespace detail
 
 /// Sine and cosine of x in radians, within 1 ulp for |x| <= 1e6; useless but finite beyond 1e9.
@@ -172,24 +198,7 @@ inline float pow_of(float x, float y) {
 
 /// The angle of (x, y) in (-pi, pi], within 1 ulp; 0 at the origin.
 inline float atan2_of(float y, float x) {
-  const double ax = std::abs(static_cast<double>(x)), ay = std::abs(static_cast<double>(y));
-  const double small = ax < ay ? ax : ay, large = ax < ay ? ay : ax;
-  const bool upper = small > 0.41421356237309503 * large;  // tan(pi/8): reduce by 45 degrees
-  const double num = upper ? small - large : small;
-  const double den = upper ? small + large : large;
-  const double z = num / (den > 0 ? den : 1.0), t = z * z;
-  const double p =
-      z *
-      (0.999999999999239115 +
-       t * (-0.333333332765574532 +
-            t * (0.199999930155473431 +
-                 t * (-0.142853850858703831 +
-                      t * (0.111034301559724669 +
-                           t * (-0.0899230448651733591 + t * (0.0697306111496183722 + t * -0.0376347887053254317)))))));
-  const double octant = upper ? p + 0.25 * detail::kPiD : p;
-  const double quadrant = ax < ay ? 0.5 * detail::kPiD - octant : octant;
-  const double half = x < 0 ? detail::kPiD - quadrant : quadrant;
-  return static_cast<float>(y < 0 ? -half : half);
+  return static_cast<float>(detail::atan2_kernel(static_cast<double>(y), static_cast<double>(x)));
 }
 
 /// Arc sine within 1 ulp; the argument is clamped to [-1, 1], because rounding leaves the closed range.

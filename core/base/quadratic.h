@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/fastmath.h"
 #include "core/base/vec.h"
 
 namespace whit {
@@ -147,9 +148,9 @@ inline constexpr double kPiD = 3.14159265358979323846;
 /// Degrees to radians.
 inline double radians(double degrees) { return degrees * (kPiD / 180); }
 
-/// The angle of (x, y) from the x axis, in [0, 2 pi]; 0 at the origin.
+/// The angle of (x, y) from the x axis, in [0, 2 pi], within 1e-12; 0 at the origin.
 inline double azimuth(double x, double y) {
-  const double phi = std::atan2(y, x);
+  const double phi = detail::atan2_kernel(y, x);
   return phi < 0 ? phi + 2 * kPiD : phi;
 }
 
@@ -159,13 +160,16 @@ struct Sweep {
   explicit Sweep(double degrees = 360) : phi_max(degrees >= 360 ? 2 * kPiD : radians(degrees)) {}
   bool covers(double x, double y) const { return phi_max >= 2 * kPiD || azimuth(x, y) <= phi_max; }
   /// The parameter u in [0,1] of a point.
-  double u(double x, double y) const { return std::min(azimuth(x, y) / phi_max, 1.0); }
+  double u(double x, double y) const { return clamp_to(azimuth(x, y) / phi_max, 0.0, 1.0); }
 };
+
+/// The distance of a point from the z axis. Coordinates come from floats: their squares stay within double's range.
+inline double axis_distance(double x, double y) { return std::sqrt(x * x + y * y); }
 
 /// The unit vector from the z axis towards a point; (1, 0) on the axis, where any direction is as good.
 inline Vec2d away_from_axis(double x, double y) {
-  const double r = std::hypot(x, y);
-  return r > 0 ? Vec2d(x / r, y / r) : Vec2d(1, 0);
+  const double r = axis_distance(x, y), inverse = 1 / (r > 0 ? r : 1.0);
+  return Vec2d(r > 0 ? x * inverse : 1.0, y * inverse);
 }
 
 /// A point of a curve r(v), z(v) that is turned around the z axis, with its derivatives by v. z'' is 0.
@@ -200,7 +204,8 @@ inline void weingarten(const Vec3d& dpduu, const Vec3d& dpduv, const Vec3d& dpdv
 /// A bound on the error of a point that was put on a quadric in double precision: 16 roundings of its largest
 /// component.
 inline Vec3d rounding_bound(const Vec3d& p) {
-  const double largest = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  const double xy = std::abs(p.x) > std::abs(p.y) ? std::abs(p.x) : std::abs(p.y);
+  const double largest = std::abs(p.z) > xy ? std::abs(p.z) : xy;
   return Vec3d(largest * 16 * 1.1102230246251565e-16);
 }
 

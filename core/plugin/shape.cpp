@@ -52,6 +52,13 @@ bool has_no_area(const double* a, const double* b, const double* c) {
 
 }  // namespace
 
+SurfacePoint AnalyticShape::surface(const Vec3d& p) const {
+  SurfacePointLanes s;
+  s.n = 1, s.p.set(0, p);
+  surfaces(s);
+  return {s.p[0], s.p_error[0], s.u[0], s.v[0], s.dpdu[0], s.dpdv[0], s.dndu[0], s.dndv[0]};
+}
+
 namespace detail {
 
 template <>

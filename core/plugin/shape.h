@@ -73,6 +73,35 @@ struct SurfacePoint {
   Vec3d dndu, dndv;  ///< Derivatives of the unit normal normalize(dpdu x dpdv).
 };
 
+/// Vectors of SurfacePointLanes.
+struct SurfaceVectors {
+  static constexpr int kWidth = 64;
+  double x[kWidth], y[kWidth], z[kWidth];
+  Vec3d operator[](int i) const { return {x[i], y[i], z[i]}; }
+  void set(int i, const Vec3d& v) { x[i] = v.x, y[i] = v.y, z[i] = v.z; }
+};
+
+/// SurfacePoint for up to kWidth hits of one shape, structure of arrays: few enough to stay in the cache.
+struct SurfacePointLanes {
+  static constexpr int kWidth = SurfaceVectors::kWidth;
+  int n = 0;
+  SurfaceVectors p;  ///< In: the computed hits. Out: on the surface.
+  SurfaceVectors p_error, dpdu, dpdv, dndu, dndv;
+  double u[kWidth], v[kWidth];
+};
+
+/// Replaces every hit of s by point(hit), a SurfacePoint.
+template <class PointAt>
+[[gnu::flatten]] inline void for_surface_points(SurfacePointLanes& s, const PointAt& point) {
+  for_lanes(s.n, [&s, &point](int i) {
+    const SurfacePoint at = point(s.p[i]);
+    s.p.set(i, at.p), s.p_error.set(i, at.p_error);
+    s.u[i] = at.u, s.v[i] = at.v;
+    s.dpdu.set(i, at.dpdu), s.dpdv.set(i, at.dpdv);
+    s.dndu.set(i, at.dndu), s.dndv.set(i, at.dndv);
+  });
+}
+
 /// A point sampled on a shape for lighting.
 struct ShapeSample {
   Vec3d p;     ///< In the space of the shape's placement.
@@ -110,8 +139,10 @@ class AnalyticShape : public Shape {
   /// outward: shadow rays to it then need not be tested against it.
   virtual bool cannot_shade_itself() const { return false; }
 
-  /// The local geometry at a hit: `p` is the computed hit point in object space.
-  virtual SurfacePoint surface(const Vec3d& p) const = 0;
+  /// The local geometry at hits; object space. Shapes write it for one point and let for_surface_points() loop.
+  virtual void surfaces(SurfacePointLanes& s) const = 0;
+  /// The same for one hit.
+  SurfacePoint surface(const Vec3d& p) const;
 
   /// The point of the surface at parameters in [0,1)^2 uniform in *object-space* area, with its unnormalised
   /// outward object-space normal direction dpdu x dpdv (before flips) as n, and pdf = 1 / object area.

@@ -175,11 +175,26 @@ Vec3f to_float(const Vec3d& v) {
   return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
+/// m applied to a point, one coordinate; m is affine.
+[[gnu::always_inline]] inline double affine(const Mat4d& m, int c, double x, double y, double z) {
+  return x * m[0][c] + y * m[1][c] + z * m[2][c] + m[3][c];
+}
+
+/// The linear part of m applied to v; unlike Imath's, without a branch.
+[[gnu::always_inline]] inline Vec3d linear(const Mat4d& m, const Vec3d& v) {
+  const auto row = [&](int c) { return v.x * m[0][c] + v.y * m[1][c] + v.z * m[2][c]; };
+  return {row(0), row(1), row(2)};
+}
+
+[[gnu::always_inline]] inline Vec3d unit_vector(const Vec3d& v) { return v * (1 / std::sqrt(v.dot(v))); }
+
 /// The change of a unit normal n by `dn`, as a transform's normal matrix carries it along: the change of the unit normal
 /// there, whatever the matrix's scale.
-Vec3d transform_normal_change(const Mat4d& normal_matrix, const Vec3d& n, const Vec3d& dn) {
-  const Vec3d m = transform_vector(normal_matrix, n), d = transform_vector(normal_matrix, dn);
-  return (d - m * (m.dot(d) / m.length2())) / m.length();
+[[gnu::always_inline]] inline Vec3d transform_normal_change(const Mat4d& normal_matrix, const Vec3d& n,
+                                                            const Vec3d& dn) {
+  const Vec3d m = linear(normal_matrix, n), d = linear(normal_matrix, dn);
+  const double length2 = m.dot(m);
+  return (d - m * (m.dot(d) / length2)) * (1 / std::sqrt(length2));
 }
 
 /// The group's local space of a hit: render space itself for world geometry.
@@ -195,35 +210,72 @@ Vec3d oriented_normal(const Vec3d& dpdu, const Vec3d& dpdv, const Mat4d& m, bool
   return dpdu.cross(dpdv).normalized() * (flips != swaps_handedness(m) ? -1.0 : 1.0);
 }
 
-void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
-                       const GeometricPartials& g) {
-  for (int i = 0; i < s.n; ++i) {
-    const AnalyticShape& shape = *scene.shapes[static_cast<size_t>(h.shape[first + i])].analytic;
-    Vec3d p = Vec3d(h.o[first + i]) + static_cast<double>(h.t[first + i]) * Vec3d(h.d[first + i]);
-    if (h.instance[first + i] >= 0) p = transform_point(render_to_local(scene, h, first + i), p);
-    const Mat4d& m = shape.object_to_scene();
-    const SurfacePoint point = shape.surface(transform_point(shape.scene_to_object(), p));
-    const Vec3d q = transform_point(m, point.p);
-    const auto error_of = [&](int c) {
-      const double object = std::abs(m[0][c]) * point.p_error.x + std::abs(m[1][c]) * point.p_error.y +
-                            std::abs(m[2][c]) * point.p_error.z;
-      return static_cast<float>(object) + gamma_bound(3) * static_cast<float>(std::abs(q[c]));
+/// The computed hits of rays with one analytic shape, in its object space.
+void object_hits(const Scene& scene, const SurfaceHits& h, int first, const Mat4d& to_object, SurfacePointLanes& out) {
+  for_lanes(out.n, [&](int i) {
+    const double t = static_cast<double>(h.t[first + i]);
+    const auto at = [&](const float* o, const float* d) {
+      return static_cast<double>(o[first + i]) + t * static_cast<double>(d[first + i]);
+    };
+    out.p.set(i, {at(h.o.x, h.d.x), at(h.o.y, h.d.y), at(h.o.z, h.d.z)});
+  });
+  for (int i = 0; i < out.n && !scene.instances.empty(); ++i) {
+    if (h.instance[first + i] >= 0) out.p.set(i, transform_point(render_to_local(scene, h, first + i), out.p[i]));
+  }
+  for_lanes(out.n, [&](int i) {
+    const double x = out.p.x[i], y = out.p.y[i], z = out.p.z[i];
+    out.p.set(i, {affine(to_object, 0, x, y, z), affine(to_object, 1, x, y, z), affine(to_object, 2, x, y, z)});
+  });
+}
+
+/// Takes points of a shape from its object space by m to the space it is placed in.
+void place_points(const Mat4d& m, const SurfacePointLanes& in, const ShadingBatch& s, const GeometricPartials& g) {
+  const double mirrored = swaps_handedness(m) ? -1 : 1;
+  for_lanes(in.n, [&](int i) {
+    const Vec3d error = in.p_error[i];
+    const auto coordinate = [&](int c) { return affine(m, c, in.p.x[i], in.p.y[i], in.p.z[i]); };
+    const Vec3d q(coordinate(0), coordinate(1), coordinate(2));
+    const auto error_of = [&](int c, double at) {
+      const double object = std::abs(m[0][c]) * error.x + std::abs(m[1][c]) * error.y + std::abs(m[2][c]) * error.z;
+      return static_cast<float>(object) + gamma_bound(3) * static_cast<float>(std::abs(at));
     };
     s.p.set(i, to_float(q));
-    s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
-    s.u[i] = static_cast<float>(point.u), s.v[i] = static_cast<float>(point.v);
-    const Vec3d dpdu = transform_vector(m, point.dpdu), dpdv = transform_vector(m, point.dpdv);
+    s.p_error.set(i, {error_of(0, q.x), error_of(1, q.y), error_of(2, q.z)});
+    s.u[i] = static_cast<float>(in.u[i]), s.v[i] = static_cast<float>(in.v[i]);
+    const Vec3d dpdu = linear(m, in.dpdu[i]), dpdv = linear(m, in.dpdv[i]);
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
     s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
-    const Vec3d n = oriented_normal(dpdu, dpdv, m, s.flips[i] != 0);
+    // pbrt flips the object's normal and then transforms it: the cross product's own change of sign goes.
+    const Vec3d n = unit_vector(dpdu.cross(dpdv)) * (s.flips[i] ? -mirrored : mirrored);
     s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
-    if (s.dndu) {
-      const Mat4d normals = shape.scene_to_object().transposed();
-      const Vec3d own = point.dpdu.cross(point.dpdv).normalized();
-      const double side = s.flips[i] ? -1 : 1;
-      s.dndu.set(i, to_float(transform_normal_change(normals, own, point.dndu) * side));
-      s.dndv.set(i, to_float(transform_normal_change(normals, own, point.dndv) * side));
-    }
+  });
+}
+
+/// The derivatives of the unit normal, carried from object space by a placement's inverse.
+void place_normal_derivatives(const Mat4d& to_object, const SurfacePointLanes& in, const ShadingBatch& s) {
+  const Mat4d normals = to_object.transposed();
+  for_lanes(in.n, [&](int i) {
+    const Vec3d n = unit_vector(in.dpdu[i].cross(in.dpdv[i]));
+    const double side = s.flips[i] ? -1 : 1;
+    s.dndu.set(i, to_float(transform_normal_change(normals, n, in.dndu[i]) * side));
+    s.dndv.set(i, to_float(transform_normal_change(normals, n, in.dndv[i]) * side));
+  });
+}
+
+void analytic_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
+                       const GeometricPartials& g) {
+  SurfacePointLanes points;
+  for (int begin = 0, end; begin < s.n; begin = end) {
+    const int index = h.shape[first + begin];
+    const int limit = std::min(s.n, begin + SurfacePointLanes::kWidth);
+    for (end = begin + 1; end < limit && h.shape[first + end] == index;) ++end;
+    const AnalyticShape& shape = *scene.shapes[static_cast<size_t>(index)].analytic;
+    points.n = end - begin;
+    object_hits(scene, h, first + begin, shape.scene_to_object(), points);
+    shape.surfaces(points);
+    const ShadingBatch run = s.range(begin, points.n);
+    place_points(shape.object_to_scene(), points, run, {g.dpdu.from(begin), g.dpdv.from(begin)});
+    if (s.dndu) place_normal_derivatives(shape.scene_to_object(), points, run);
   }
 }
 

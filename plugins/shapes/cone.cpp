@@ -28,18 +28,8 @@ struct Cone final : AnalyticShape {
         rays, quadric_, [&](const Vec3d& p) { return p.z >= -h_ && p.z <= 0 && sweep_.covers(p.x, p.y); }, h_);
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    const Vec3d q = quadric_.project(hit - Vec3d(0, 0, h_));
-    SurfacePoint s;
-    s.p = q + Vec3d(0, 0, h_);
-    s.p_error = rounding_bound({r_, 0, h_});
-    s.u = sweep_.u(s.p.x, s.p.y);
-    s.v = std::clamp(s.p.z / h_, 0.0, 1.0);
-    // At the tip dpdu vanishes; a small radius keeps dpdu x dpdv pointing outward.
-    const double rho = std::max(r_ * -q.z / h_, 1e-8 * r_);
-    const SurfaceDerivatives d = revolve({rho, -r_, h_, 0}, away_from_axis(q.x, q.y), sweep_.phi_max);
-    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -50,6 +40,20 @@ struct Cone final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    const Vec3d q = quadric_.project(hit - Vec3d(0, 0, h_));
+    SurfacePoint s;
+    s.p = q + Vec3d(0, 0, h_);
+    s.p_error = rounding_bound({r_, 0, h_});
+    s.u = sweep_.u(s.p.x, s.p.y);
+    s.v = clamp_to(s.p.z / h_, 0.0, 1.0);
+    // At the tip dpdu vanishes; a small radius keeps dpdu x dpdv pointing outward.
+    const double rho = std::max(r_ * -q.z / h_, 1e-8 * r_);
+    const SurfaceDerivatives d = revolve({rho, -r_, h_, 0}, away_from_axis(q.x, q.y), sweep_.phi_max);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
+    return s;
+  }
+
   double r_ = 1, h_ = 1;
   Sweep sweep_;
   AxialQuadric quadric_;

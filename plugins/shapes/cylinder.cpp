@@ -27,16 +27,8 @@ struct Cylinder final : AnalyticShape {
                       [&](const Vec3d& p) { return p.z >= z_min_ && p.z <= z_max_ && sweep_.covers(p.x, p.y); });
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    const Vec2d out = away_from_axis(hit.x, hit.y);
-    const SurfaceDerivatives d = revolve({r_, 0, z_max_ - z_min_, 0}, out, sweep_.phi_max);
-    SurfacePoint s;
-    s.p = {r_ * out.x, r_ * out.y, hit.z};
-    s.p_error = rounding_bound({r_, 0, 0});
-    s.u = sweep_.u(hit.x, hit.y);
-    s.v = std::clamp((hit.z - z_min_) / (z_max_ - z_min_), 0.0, 1.0);
-    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -46,6 +38,18 @@ struct Cylinder final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    const Vec2d out = away_from_axis(hit.x, hit.y);
+    const SurfaceDerivatives d = revolve({r_, 0, z_max_ - z_min_, 0}, out, sweep_.phi_max);
+    SurfacePoint s;
+    s.p = {r_ * out.x, r_ * out.y, hit.z};
+    s.p_error = rounding_bound({r_, 0, 0});
+    s.u = sweep_.u(hit.x, hit.y);
+    s.v = clamp_to((hit.z - z_min_) / (z_max_ - z_min_), 0.0, 1.0);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
+    return s;
+  }
+
   double r_ = 1, z_min_ = -1, z_max_ = 1;
   Sweep sweep_;
 };

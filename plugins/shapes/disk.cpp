@@ -51,19 +51,8 @@ struct Disk final : AnalyticShape {
     }
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    SurfacePoint s;
-    s.p = {hit.x, hit.y, h_};
-    s.p_error = Vec3d(0);  // h_ is exact, and every x and y is on the disk.
-    const Vec2d out = away_from_axis(hit.x, hit.y);
-    const double rho = std::hypot(hit.x, hit.y);
-    s.u = sweep_.u(hit.x, hit.y);
-    s.v = std::clamp(1 - (rho - inner_) / (r_ - inner_), 0.0, 1.0);
-    // At the centre dpdu vanishes; a small radius keeps dpdu x dpdv pointing along z.
-    s.dpdu = Vec3d(-out.y, out.x, 0) * (sweep_.phi_max * std::max(rho, 1e-8 * r_));
-    s.dpdv = Vec3d(out.x, out.y, 0) * (inner_ - r_);
-    s.dndu = s.dndv = Vec3d(0);
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -75,6 +64,21 @@ struct Disk final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    SurfacePoint s;
+    s.p = {hit.x, hit.y, h_};
+    s.p_error = Vec3d(0);  // h_ is exact, and every x and y is on the disk.
+    const Vec2d out = away_from_axis(hit.x, hit.y);
+    const double rho = axis_distance(hit.x, hit.y);
+    s.u = sweep_.u(hit.x, hit.y);
+    s.v = clamp_to(1 - (rho - inner_) / (r_ - inner_), 0.0, 1.0);
+    // At the centre dpdu vanishes; a small radius keeps dpdu x dpdv pointing along z.
+    s.dpdu = Vec3d(-out.y, out.x, 0) * (sweep_.phi_max * std::max(rho, 1e-8 * r_));
+    s.dpdv = Vec3d(out.x, out.y, 0) * (inner_ - r_);
+    s.dndu = s.dndv = Vec3d(0);
+    return s;
+  }
+
   double h_ = 0, r_ = 1, inner_ = 0;
   Sweep sweep_;
 };

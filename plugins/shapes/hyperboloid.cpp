@@ -41,24 +41,8 @@ struct Hyperboloid final : AnalyticShape {
     });
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    SurfacePoint s;
-    s.p = quadric_.project(hit);
-    s.p_error = rounding_bound({r_max_, z_min_, z_max_});
-    const double phi = turn(s.p), c = std::cos(phi), sn = std::sin(phi);
-    s.u = std::min(phi / sweep_.phi_max, 1.0);
-    s.v = std::clamp(along(s.p), 0.0, 1.0);
-    const Vec3d line = b_ - a_;
-    SurfaceDerivatives d;
-    // Where the surface meets the axis dpdu vanishes; a small radius keeps the direction of dpdu x dpdv.
-    const Vec2d out = away_from_axis(s.p.x, s.p.y);
-    const double rho = std::max(std::hypot(s.p.x, s.p.y), 1e-8 * r_max_);
-    d.dpdu = Vec3d(-out.y, out.x, 0) * (sweep_.phi_max * rho);
-    d.dpdv = {line.x * c - line.y * sn, line.x * sn + line.y * c, line.z};
-    const double m = sweep_.phi_max;
-    weingarten(Vec3d(out.x, out.y, 0) * (-m * m * rho), Vec3d(-d.dpdv.y, d.dpdv.x, 0) * m, Vec3d(0), d);
-    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -77,6 +61,26 @@ struct Hyperboloid final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    SurfacePoint s;
+    s.p = quadric_.project(hit);
+    s.p_error = rounding_bound({r_max_, z_min_, z_max_});
+    const double phi = turn(s.p), c = std::cos(phi), sn = std::sin(phi);
+    s.u = std::min(phi / sweep_.phi_max, 1.0);
+    s.v = clamp_to(along(s.p), 0.0, 1.0);
+    const Vec3d line = b_ - a_;
+    SurfaceDerivatives d;
+    // Where the surface meets the axis dpdu vanishes; a small radius keeps the direction of dpdu x dpdv.
+    const Vec2d out = away_from_axis(s.p.x, s.p.y);
+    const double rho = std::max(axis_distance(s.p.x, s.p.y), 1e-8 * r_max_);
+    d.dpdu = Vec3d(-out.y, out.x, 0) * (sweep_.phi_max * rho);
+    d.dpdv = {line.x * c - line.y * sn, line.x * sn + line.y * c, line.z};
+    const double m = sweep_.phi_max;
+    weingarten(Vec3d(out.x, out.y, 0) * (-m * m * rho), Vec3d(-d.dpdv.y, d.dpdv.x, 0) * m, Vec3d(0), d);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
+    return s;
+  }
+
   /// The parameter v of a point: how far along the line its height is.
   double along(const Vec3d& p) const { return (p.z - a_.z) / (b_.z - a_.z); }
 

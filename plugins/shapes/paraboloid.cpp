@@ -34,18 +34,8 @@ struct Paraboloid final : AnalyticShape {
                       [&](const Vec3d& p) { return p.z >= v_min_ && p.z <= z_max_ && sweep_.covers(p.x, p.y); });
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    SurfacePoint s;
-    s.p = quadric_.project(hit);
-    s.p_error = rounding_bound({r_, 0, z_max_});
-    s.u = sweep_.u(s.p.x, s.p.y);
-    s.v = std::clamp((s.p.z - v_min_) / (z_max_ - v_min_), 0.0, 1.0);
-    // At the lowest point dpdu vanishes and dpdv is infinite; a small radius keeps dpdu x dpdv pointing outward.
-    const double rho = std::max(std::hypot(s.p.x, s.p.y), 1e-6 * r_), dz = z_max_ - v_min_;
-    const double dr = dz / (2 * k_ * rho), ddr = -dr * dr / rho;
-    const SurfaceDerivatives d = revolve({rho, dr, dz, ddr}, away_from_axis(s.p.x, s.p.y), sweep_.phi_max);
-    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -59,6 +49,20 @@ struct Paraboloid final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    SurfacePoint s;
+    s.p = quadric_.project(hit);
+    s.p_error = rounding_bound({r_, 0, z_max_});
+    s.u = sweep_.u(s.p.x, s.p.y);
+    s.v = clamp_to((s.p.z - v_min_) / (z_max_ - v_min_), 0.0, 1.0);
+    // At the lowest point dpdu vanishes and dpdv is infinite; a small radius keeps dpdu x dpdv pointing outward.
+    const double rho = std::max(axis_distance(s.p.x, s.p.y), 1e-6 * r_), dz = z_max_ - v_min_;
+    const double dr = dz / (2 * k_ * rho), ddr = -dr * dr / rho;
+    const SurfaceDerivatives d = revolve({rho, dr, dz, ddr}, away_from_axis(s.p.x, s.p.y), sweep_.phi_max);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv, s.dndu = d.dndu, s.dndv = d.dndv;
+    return s;
+  }
+
   double r_ = 1, v_min_ = 0, z_min_ = 0, z_max_ = 1, k_ = 1;
   Sweep sweep_;
   AxialQuadric quadric_;

@@ -52,22 +52,8 @@ struct Sphere final : AnalyticShape {
     }
   }
 
-  SurfacePoint surface(const Vec3d& hit) const override {
-    SurfacePoint s;
-    s.p = hit * (r_ / hit.length());
-    s.p_error = rounding_bound(s.p);
-    const Vec2d axis_to_p(s.p.x, s.p.y);
-    const double from_axis = axis_to_p.length(), d_theta = theta_at_z_max_ - theta_at_z_min_;
-    const double theta = std::atan2(from_axis, s.p.z);  // not by acos, which loses its digits at the poles
-    s.u = sweep_.u(s.p.x, s.p.y);
-    s.v = std::clamp((theta - theta_at_z_min_) / d_theta, 0.0, 1.0);
-    // At the poles dpdu vanishes; a small radius keeps dpdu x dpdv pointing outward.
-    const double rho = std::max(from_axis, kPole * r_);
-    const Vec2d outward = from_axis > 0 ? axis_to_p / from_axis : Vec2d(1, 0);
-    const SurfaceDerivatives d = revolve({rho, d_theta * s.p.z, -d_theta * rho, 0}, outward, sweep_.phi_max);
-    s.dpdu = d.dpdu, s.dpdv = d.dpdv;
-    s.dndu = d.dpdu / r_, s.dndv = d.dpdv / r_;  // The unit normal is p / r.
-    return s;
+  void surfaces(SurfacePointLanes& s) const override {
+    for_surface_points(s, [this](const Vec3d& hit) { return point(hit); });
   }
 
   ShapeSample sample_area(double u0, double u1) const override {
@@ -100,6 +86,23 @@ struct Sphere final : AnalyticShape {
   }
 
  private:
+  SurfacePoint point(const Vec3d& hit) const {
+    SurfacePoint s;
+    s.p = hit * (r_ / std::sqrt(hit.dot(hit)));
+    s.p_error = rounding_bound(s.p);
+    const double from_axis = axis_distance(s.p.x, s.p.y), d_theta = theta_at_z_max_ - theta_at_z_min_;
+    const double theta = detail::atan2_kernel(from_axis, s.p.z);  // not by acos, which loses its digits at the poles
+    s.u = sweep_.u(s.p.x, s.p.y);
+    s.v = clamp_to((theta - theta_at_z_min_) / d_theta, 0.0, 1.0);
+    // At the poles dpdu vanishes; a small radius keeps dpdu x dpdv pointing outward.
+    const double rho = std::max(from_axis, kPole * r_);
+    const SurfaceDerivatives d =
+        revolve({rho, d_theta * s.p.z, -d_theta * rho, 0}, away_from_axis(s.p.x, s.p.y), sweep_.phi_max);
+    s.dpdu = d.dpdu, s.dpdv = d.dpdv;
+    s.dndu = d.dpdu / r_, s.dndv = d.dpdv / r_;  // The unit normal is p / r.
+    return s;
+  }
+
   static constexpr double kPole = 1e-8, kHuge = 1e300;
   static constexpr double kRound = 1e-13, kNearlyRound = 1e-2;
 

@@ -63,7 +63,7 @@ class Plate final : public AnalyticShape {
       if (t > r.t_min[i] && t < r.t[i] && std::abs(x) <= half_ && std::abs(y) <= half_) r.t[i] = t;
     }
   }
-  SurfacePoint surface(const Vec3d&) const override { return {}; }
+  void surfaces(SurfacePointLanes&) const override {}
   ShapeSample sample_area(double, double) const override { return {}; }
 
  private:
