@@ -250,13 +250,18 @@ struct Packets<16> {
   using RayHit = RTCRayHit16;
 };
 
+/// Copies the first `count` of up to N values. A whole packet is a matter of one instruction, without a call.
+template <int N, class T>
+void copy_lanes(T* to, const T* from, int count) {
+  if (count == N) std::memcpy(to, from, sizeof(T) * N);
+  else std::memcpy(to, from, sizeof(T) * static_cast<size_t>(count));
+}
+
 /// Fills one packet from lanes [first, first + count). Lanes beyond count and rays that are not usable are switched off
 /// by `valid`, and are such that nothing happens to them should Embree look at them all the same.
 template <int N, class Packet>
 void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* valid) {
-  const auto copy = [&](float* to, const float* from) {
-    std::memcpy(to, from + first, sizeof(float) * static_cast<size_t>(count));
-  };
+  const auto copy = [&](float* to, const float* from) { copy_lanes<N>(to, from + first, count); };
   copy(ray.org_x, rays.o.x), copy(ray.org_y, rays.o.y), copy(ray.org_z, rays.o.z);
   copy(ray.dir_x, rays.d.x), copy(ray.dir_y, rays.d.y), copy(ray.dir_z, rays.d.z);
   for (int i = 0; i < N; ++i) {
@@ -297,6 +302,8 @@ struct Accel::Impl {
   std::vector<Group> groups;
   std::vector<int32_t> instance_group;
   std::vector<std::unique_ptr<GeometryUser>> users;
+  double small_scene = 0;
+  double worth = 0;  ///< Of the whole scene, in triangles; see AccelOptions.
   std::atomic<ssize_t> bytes{0};
   std::string error;
 
@@ -334,8 +341,12 @@ struct Accel::Impl {
   }
 };
 
+// In triangles: where the coherence hint wins and loses was measured with scenes of both kinds. Curves and instances
+// are never few.
+constexpr double kWorthOfAnalytic = 200, kWorthOfLarge = 1e9;
+
 Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
-  impl_->robust = options.robust;
+  impl_->robust = options.robust, impl_->small_scene = options.small_scene;
   impl_->device = rtcNewDevice(options.embree.empty() ? nullptr : options.embree.c_str());
   const auto can = [this](RTCDeviceProperty p) { return rtcGetDeviceProperty(impl_->device, p) != 0; };
   if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
@@ -372,6 +383,7 @@ void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest
                              mesh.triangle_count);
   impl_->set_alpha(g, alpha);
   impl_->attach(group, g, shape);
+  impl_->worth += static_cast<double>(mesh.triangle_count);
 }
 
 void Accel::add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha) {
@@ -382,6 +394,7 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
   rtcSetGeometryIntersectFunction(g, curve_intersect);
   rtcSetGeometryOccludedFunction(g, curve_occluded);
   impl_->attach(group, g, shape);
+  impl_->worth += kWorthOfLarge;
 }
 
 void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, const AlphaTest* alpha) {
@@ -395,6 +408,7 @@ void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, co
   rtcSetGeometryIntersectFunction(g, analytic_intersect);
   rtcSetGeometryOccludedFunction(g, analytic_occluded);
   impl_->attach(group, g, shape);
+  impl_->worth += kWorthOfAnalytic;
 }
 
 int Accel::add_instance(int group, const std::vector<Affine>& keys) {
@@ -410,6 +424,7 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcAttachGeometryByID(impl_->group(kWorld).scene, g, static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
+  impl_->worth += kWorthOfLarge;
   return index;
 }
 
@@ -425,7 +440,7 @@ template <int N>
 void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
   const RTCScene scene = groups[kWorld].scene;
   const int world_first = groups[kWorld].first_shape, world_shapes = groups[kWorld].shape_count;
-  EmbreeQuery query(coherent);
+  EmbreeQuery query(coherent || worth <= small_scene);
   alignas(64) typename Packets<N>::RayHit packet;
   alignas(64) int valid[N];
   for (int first = 0; first < rays.n; first += N) {
@@ -436,11 +451,10 @@ void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coh
       packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
     query.trace(valid, scene, packet);
-    const size_t size = sizeof(float) * static_cast<size_t>(count);
-    std::memcpy(hits.t + first, packet.ray.tfar, size);
-    std::memcpy(hits.u + first, packet.hit.u, size);
-    std::memcpy(hits.v + first, packet.hit.v, size);
-    std::memcpy(hits.prim + first, packet.hit.primID, size);
+    copy_lanes<N>(hits.t + first, packet.ray.tfar, count);
+    copy_lanes<N>(hits.u + first, packet.hit.u, count);
+    copy_lanes<N>(hits.v + first, packet.hit.v, count);
+    copy_lanes<N>(hits.prim + first, packet.hit.primID, count);
     for (int i = 0; i < count; ++i) {
       if (!valid[i]) hits.t[first + i] = std::numeric_limits<float>::quiet_NaN();
       const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];

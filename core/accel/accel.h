@@ -57,7 +57,10 @@ struct Affine {
 };
 
 struct AccelOptions {
-  bool robust = true;    ///< Watertight traversal.
+  bool robust = true;  ///< Watertight traversal.
+  /// Scenes worth at most so many triangles (an analytic shape is worth 200) are traced as if all rays were coherent:
+  /// neighbours then meet the same few boxes wherever they go. Measured in docs/speed.md.
+  double small_scene = 1000;
   std::string embree{};  ///< Configuration of Embree's device, e.g. "isa=avx2"; tests use it.
 };
 
@@ -84,7 +87,7 @@ class Accel {
   /// Builds the acceleration structures. Returns an error text, "" when all went well.
   std::string build();
 
-  /// `coherent`: neighbouring rays are alike (camera rays).
+  /// `coherent`: neighbouring rays are alike (camera rays). Decides the speed, and the rays' kind in a record.
   void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
   /// Writes 1 where something is hit before t_max, else 0.
   void occluded(const RayLanes& rays, uint8_t* blocked) const;

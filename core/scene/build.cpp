@@ -76,7 +76,7 @@ class Builder {
 
   std::unique_ptr<Scene> run() {
     if (!options_complete()) return nullptr;
-    scene_->accel = std::make_unique<Accel>(AccelOptions{options_.robust_traversal});
+    scene_->accel = std::make_unique<Accel>(AccelOptions{.robust = options_.robust_traversal});
     prepare_sampling();
     const auto start = Clock::now();
     load_groups();

@@ -79,7 +79,7 @@ constexpr float kDiagonal = 0.70710678f;
 TEST(Accel, TrianglesAreHitWhereTheyAre) {
   const Square square;
   for (const bool robust : {true, false}) {
-    Accel accel({robust});
+    Accel accel({.robust = robust, .small_scene = 0});
     accel.add_mesh(Accel::kWorld, square.view(), 7, nullptr);
     ASSERT_EQ(accel.build(), "");
     for (const bool coherent : {true, false}) {
@@ -107,7 +107,7 @@ TEST(Accel, TrianglesAreHitWhereTheyAre) {
 }
 
 TEST(Accel, NothingAtAllIsHitByNothing) {
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   ASSERT_EQ(accel.build(), "");
   Rays rays{{{0, 0, 1}, {0, 0, -1}}};
   rays.intersect(accel);
@@ -119,7 +119,7 @@ TEST(Accel, NothingAtAllIsHitByNothing) {
 TEST(Accel, EveryLaneOfAnyNumberOfRaysIsItsOwn) {
   // Ray i meets the square at x = (i + 0.5) / n when i is even, and passes beside it when odd; t is 1 + i.
   const Square square;
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   accel.add_mesh(Accel::kWorld, square.view(), 3, nullptr);
   ASSERT_EQ(accel.build(), "");
   for (const size_t n : {1, 2, 7, 15, 16, 17, 33, 100}) {
@@ -145,7 +145,7 @@ TEST(Accel, TheNearestOfMeshAndAnalyticShapeWins) {
   Plate above(5), below(5);
   above.place(Mat4d().setTranslation(Vec3d(0, 0, 1)), false);
   below.place(Mat4d().setTranslation(Vec3d(0, 0, -1)), false);
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   accel.add_mesh(Accel::kWorld, square.view(), 0, nullptr);
   accel.add_analytic(Accel::kWorld, above, 1, nullptr);
   accel.add_analytic(Accel::kWorld, below, 2, nullptr);
@@ -170,7 +170,7 @@ TEST(Accel, EveryInstructionSetFindsTheSame) {
     const Square square;
     Plate plate(0.2);
     plate.place(Mat4d().setTranslation(Vec3d(0.5, 0.5, 1)), false);
-    Accel accel({.robust = true, .embree = set});
+    Accel accel({.robust = true, .small_scene = 0, .embree = set});
     accel.add_mesh(Accel::kWorld, square.view(), 0, nullptr);
     accel.add_analytic(Accel::kWorld, plate, 1, nullptr);
     ASSERT_EQ(accel.build(), "") << set;
@@ -193,7 +193,7 @@ TEST(Accel, OcclusionEndsAtTMax) {
   const Square square;
   Plate plate(1);
   plate.place(Mat4d().setTranslation(Vec3d(10, 0, 0)), false);
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   accel.add_mesh(Accel::kWorld, square.view(), 0, nullptr);
   accel.add_analytic(Accel::kWorld, plate, 1, nullptr);
   ASSERT_EQ(accel.build(), "");
@@ -211,7 +211,7 @@ TEST(Accel, InstancesPlaceTheirGroup) {
   const Square square;
   Plate plate(0.5);
   plate.place(Mat4d().setTranslation(Vec3d(0.5, 0.5, -1)), false);
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   const int group = accel.add_group();
   accel.add_mesh(group, square.view(), 4, nullptr);
   accel.add_analytic(group, plate, 5, nullptr);
@@ -249,7 +249,7 @@ TEST(Accel, ManyRaysMeetOverlappingInstances) {
   Plate low(0.5), high(0.5);
   low.place(Mat4d(), false);
   high.place(Mat4d().setTranslation(Vec3d(0, 0, 1)), false);
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   const int group = accel.add_group();
   accel.add_analytic(group, low, 1, nullptr);
   accel.add_analytic(group, high, 2, nullptr);
@@ -272,7 +272,7 @@ TEST(Accel, ManyRaysMeetOverlappingInstances) {
 
 TEST(Accel, MovingInstancesAreWhereTheyAreAtTheRaysTime) {
   const Square square;
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   const int group = accel.add_group();
   accel.add_mesh(group, square.view(), 0, nullptr);
   // Three keys: x goes 0, 4, 4 at times 0, 0.5, 1.
@@ -298,7 +298,7 @@ TEST(Accel, AlphaTestsLetRaysThrough) {
   Plate plate(5);
   plate.place(Mat4d().setTranslation(Vec3d(0, 0, -1)), false);
   const Cut cut;
-  Accel accel({});
+  Accel accel({.robust = true, .small_scene = 0});
   accel.add_mesh(Accel::kWorld, square.view(), 0, &cut);
   accel.add_analytic(Accel::kWorld, plate, 1, nullptr);
   ASSERT_EQ(accel.build(), "");
@@ -314,7 +314,7 @@ TEST(Accel, AlphaTestsLetRaysThrough) {
 TEST(Accel, ACrackedEdgeLetsNothingThrough) {
   // Along the diagonal that both triangles share, robust traversal misses nothing.
   const Square square;
-  Accel accel({true});
+  Accel accel({.robust = true, .small_scene = 0});
   accel.add_mesh(Accel::kWorld, square.view(), 0, nullptr);
   ASSERT_EQ(accel.build(), "");
   constexpr size_t kRays = 10000;
