@@ -92,8 +92,11 @@ class MipMap {
   };
   template <int C>
   using Value = std::array<float, C>;
+  static constexpr int kLanes = 64;  ///< So many lookups are prepared at a time.
   struct Ellipse;
-  struct RowWeights;
+  struct EllipseLanes;
+  struct EwaLanes;
+  struct BlockWeights;
   template <int C, WrapMode W>
   class Sampler;
 
@@ -101,6 +104,8 @@ class MipMap {
   void add_levels(Texels texels, bool as_half, float scale);
   template <int C, class F>
   int with_sampler(const F& f) const;
+  template <class S>
+  void ewa_lookups(S& sampler, const LookupPoints& p, const MipFilter& filter, float* const* out) const;
 
   std::vector<std::shared_ptr<const Level>> levels_;
   int first_ = 0;

@@ -9,22 +9,21 @@
 #include <type_traits>
 
 #include "core/base/fastmath.h"
+#include "core/batch/lanes.h"
 #include "core/image/mipmap.h"
 
 namespace whit {
 namespace {
 
-constexpr int kWeights = 128;
-
-// exp(-2 r^2) - exp(-2): a Gaussian that reaches 0 on the ellipse, tabulated over r^2 in [0, 1); 0 from there on.
-const std::array<float, kWeights + 1>& ewa_weights() {
-  static const std::array<float, kWeights + 1> table = [] {
-    std::array<float, kWeights + 1> w{};
-    for (int i = 0; i < kWeights; ++i)
-      w[i] = std::exp(-2.0f * (static_cast<float>(i) / (kWeights - 1))) - std::exp(-2.0f);
-    return w;
-  }();
-  return table;
+// The weight of a texel at r2, the squared distance from the middle of the ellipse in terms of its edge's:
+// exp(-2 r2) - exp(-2), a Gaussian that reaches 0 on the ellipse, and 0 outside. Within 1.3e-6 (a minimax fit), where
+// pbrt-v3 has a table of 128 steps: arithmetic vectorises.
+inline float ewa_weight(float r2) {
+  const float x = min_of(r2, 1.0f), x2 = x * x;  // Rounding may leave r2 a hair below 0, where the fit still holds.
+  // By Estrin's scheme, whose steps wait less for each other than Horner's.
+  const float low = 0.864663438f - 1.13520816f * x, middle = 0.862681272f - 0.457534625f * x;
+  const float high = 0.169620198f - 0.0336283143f * x;
+  return (1 - x) * (low + x2 * (middle + x2 * high));
 }
 
 // Index i of a side of n texels, n a power of two; -1 stands for black.
@@ -71,50 +70,102 @@ Texel<C> load_texel(const Imath::half* halves) {
 
 }  // namespace
 
-// The region around st that EWA weighs, in texels of one level: A s^2 + B s t + C t^2 < 1.
+// The region around st that EWA weighs, in texels of one level: A s^2 + B s t + C t^2 < 1, and the box around it.
 struct MipMap::Ellipse {
   float s, t;
   float A, B, C;
   int s0, s1, t0, t1;
 
-  Ellipse(const Level& level, float st_s, float st_t, const float (&d0)[2], const float (&d1)[2]) {
-    const float w = static_cast<float>(level.width), h = static_cast<float>(level.height);
-    s = st_s * w - 0.5f;
-    t = st_t * h - 0.5f;
-    const float s_0 = d0[0] * w, t_0 = d0[1] * h, s_1 = d1[0] * w, t_1 = d1[1] * h;
-    // The 1 widens the ellipse by a texel, so that it never falls between texel centres.
-    A = t_0 * t_0 + t_1 * t_1 + 1;
-    B = -2 * (s_0 * t_0 + s_1 * t_1);
-    C = s_0 * s_0 + s_1 * s_1 + 1;
-    const float inv_f = 1 / (A * C - B * B * 0.25f);
-    A *= inv_f;
-    B *= inv_f;
-    C *= inv_f;
-    const float det = -B * B + 4 * A * C, inv_det = 1 / det;
-    const float half_s = 2 * inv_det * std::sqrt(det * C), half_t = 2 * inv_det * std::sqrt(A * det);
-    // Rounding can make det 0 or negative for the longest, thinnest ellipses: then the box is empty and
-    // the caller takes the bilinear value.
-    const bool good = half_s < 4096 && half_t < 4096;
-    s0 = good ? static_cast<int>(std::ceil(s - half_s)) : 0;
-    s1 = good ? static_cast<int>(std::floor(s + half_s)) : -1;
-    t0 = good ? static_cast<int>(std::ceil(t - half_t)) : 0;
-    t1 = good ? static_cast<int>(std::floor(t + half_t)) : -1;
+  struct Rows {
+    int first, last;
+  };
+
+  // The rows that the ellipse can reach in n columns from x0: of a slanted one, few of the box's.
+  Rows rows_of(int x0, int n) const {
+    if (s1 - s0 < n) return {t0, t1};
+    // In the column at ss the ellipse spans -B / (2C) ss -+ sqrt(4C - (4AC - B^2) ss^2) / (2C) around t.
+    const float a = static_cast<float>(x0) - s, b = a + static_cast<float>(n - 1);
+    const float nearest = a > 0 ? a : (b < 0 ? b : 0.0f), half_inv_c = 0.5f / C;
+    const float span = safe_sqrt(4 * C - (4 * A * C - B * B) * nearest * nearest) * half_inv_c;
+    const float at_a = -B * half_inv_c * a, at_b = -B * half_inv_c * b;
+    const float low = t + min_of(at_a, at_b) - span, high = t + max_of(at_a, at_b) + span;
+    return {std::max(t0, static_cast<int>(std::ceil(low))), std::min(t1, static_cast<int>(std::floor(high)))};
   }
 };
 
-// Where the texels of a stretch of a row lie in the table of weights, computed together.
-struct MipMap::RowWeights {
-  static constexpr int kLanes = 8;
-  int32_t index[kLanes];
+// Ellipses of a batch of lookups, each in a level of its own.
+struct MipMap::EllipseLanes {
+  float s[kLanes], t[kLanes], A[kLanes], B[kLanes], C[kLanes];
+  int s0[kLanes], s1[kLanes], t0[kLanes], t1[kLanes];
 
-  RowWeights(const Ellipse& e, int x0, int y) {
-    const float tt = static_cast<float>(y) - e.t, b = e.B * tt, c = e.C * tt * tt;
-#pragma omp simd
-    for (int k = 0; k < kLanes; ++k) {
-      const float ss = static_cast<float>(x0 + k) - e.s;
-      // Rounding can leave it a hair below 0.
-      index[k] = static_cast<int32_t>(clamp_to((e.A * ss + b) * ss + c, 0.0f, 1.0f) * kWeights);
-    }
+  Ellipse operator[](int i) const { return {s[i], t[i], A[i], B[i], C[i], s0[i], s1[i], t0[i], t1[i]}; }
+
+  // The ellipse with the axes (s_0, t_0) and (s_1, t_1) around a point, all in st, for a level of w x h texels.
+  [[gnu::always_inline]] void set(int i, float w, float h, float st_s, float st_t, float s_0, float t_0, float s_1,
+                                  float t_1) {
+    const float ps = st_s * w - 0.5f, pt = st_t * h - 0.5f;
+    s_0 *= w, s_1 *= w, t_0 *= h, t_1 *= h;
+    // The 1 widens the ellipse by a texel, so that it never falls between texel centres.
+    const float a = t_0 * t_0 + t_1 * t_1 + 1, b = -2 * (s_0 * t_0 + s_1 * t_1), c = s_0 * s_0 + s_1 * s_1 + 1;
+    const float inv_f = 1 / (a * c - b * b * 0.25f);
+    A[i] = a * inv_f, B[i] = b * inv_f, C[i] = c * inv_f;
+    const float det = -B[i] * B[i] + 4 * A[i] * C[i], inv_det = 1 / det;
+    const float half_s = 2 * inv_det * std::sqrt(det * C[i]), half_t = 2 * inv_det * std::sqrt(A[i] * det);
+    // Rounding can make det 0 or negative for the longest, thinnest ellipses: then the box is empty and
+    // the caller takes the bilinear value.
+    const bool good = (half_s < 4096) & (half_t < 4096);
+    s[i] = ps, t[i] = pt;
+    s0[i] = static_cast<int>(good ? std::ceil(ps - half_s) : 0.0f);
+    s1[i] = static_cast<int>(good ? std::floor(ps + half_s) : -1.0f);
+    t0[i] = static_cast<int>(good ? std::ceil(pt - half_t) : 0.0f);
+    t1[i] = static_cast<int>(good ? std::floor(pt + half_t) : -1.0f);
+  }
+};
+
+// How EWA goes about a batch of lookups: which levels, and the ellipses there. All of it is arithmetic that vectorises.
+struct MipMap::EwaLanes {
+  int fine[kLanes];    // The finer level; kCoarsest and kBilinear (in level 0) need no ellipse.
+  float part[kLanes];  // How much the next level weighs.
+  EllipseLanes finer, coarser;
+
+  static constexpr int kCoarsest = -1, kBilinear = -2;
+
+  // (s, t) are those of p, reduced.
+  EwaLanes(const MipMap& map, const LookupPoints& p, const float* s, const float* t, float max_anisotropy) {
+    const int last = map.level_count() - 1, width = map.width(), height = map.height();
+    for_lanes(p.n, [&, this](int i) {
+      const float ax = p.dsdx[i], ay = p.dtdx[i], bx = p.dsdy[i], by = p.dtdy[i];
+      const float a2 = ax * ax + ay * ay, b2 = bx * bx + by * by;
+      const bool swap = a2 < b2;
+      const float major_s = swap ? bx : ax, major_t = swap ? by : ay;
+      const float major = std::sqrt(swap ? b2 : a2), minor = std::sqrt(swap ? a2 : b2);
+      const bool thin = minor * max_anisotropy < major;
+      const float scale = thin & (minor > 0) ? major / (minor * max_anisotropy) : 1.0f;
+      const float minor_s = (swap ? ax : bx) * scale, minor_t = (swap ? ay : by) * scale;
+      const double width_of = static_cast<double>(max_of(minor * scale, std::numeric_limits<float>::min()));
+      const float lod = max_of(0.0f, static_cast<float>(last) + static_cast<float>(detail::log2_kernel(width_of)));
+      const bool everything = !(lod < static_cast<float>(last + 1)) | !(a2 + b2 < std::numeric_limits<float>::max());
+      const int level = static_cast<int>(everything ? 0.0f : lod);
+      fine[i] = minor == 0 ? kBilinear : everything ? kCoarsest : level;
+      part[i] = lod - static_cast<float>(level);
+      const auto side = [](int of_finest, int l) { return static_cast<float>(std::max(of_finest >> l, 1)); };
+      finer.set(i, side(width, level), side(height, level), s[i], t[i], major_s, major_t, minor_s, minor_t);
+      coarser.set(i, side(width, level + 1), side(height, level + 1), s[i], t[i], major_s, major_t, minor_s, minor_t);
+    });
+  }
+};
+
+// The weights of a few columns and rows of texels, computed together.
+struct MipMap::BlockWeights {
+  static constexpr int kColumns = 4, kRows = 8;
+  alignas(64) float weight[kRows * kColumns];
+
+  BlockWeights(const Ellipse& e, int x0, int y0) {
+    const float s = static_cast<float>(x0) - e.s, t = static_cast<float>(y0) - e.t;
+    for_lanes(kRows * kColumns, [=, this](int k) {
+      const float ss = s + static_cast<float>(k % kColumns), tt = t + static_cast<float>(k / kColumns);
+      weight[k] = ewa_weight((e.A * ss + e.B * tt) * ss + e.C * tt * tt);
+    });
   }
 };
 
@@ -173,26 +224,15 @@ class MipMap::Sampler {
     return mix(level - static_cast<float>(fine), bilinear(fine, s, t), bilinear(fine + 1, s, t));
   }
 
-  Value<C> ewa(float s, float t, const float (&dx)[2], const float (&dy)[2], float max_anisotropy) {
-    const float x2 = dx[0] * dx[0] + dx[1] * dx[1], y2 = dy[0] * dy[0] + dy[1] * dy[1];
-    const float(&major)[2] = x2 < y2 ? dy : dx;
-    float minor[2] = {x2 < y2 ? dx[0] : dy[0], x2 < y2 ? dx[1] : dy[1]};
-    const float major_length = std::sqrt(std::max(x2, y2));
-    float minor_length = std::sqrt(std::min(x2, y2));
-    if (minor_length * max_anisotropy < major_length && minor_length > 0) {
-      const float scale = major_length / (minor_length * max_anisotropy);
-      minor[0] *= scale;
-      minor[1] *= scale;
-      minor_length *= scale;
-    }
-    if (minor_length == 0) return bilinear(0, s, t);
-    const float lod = std::max(0.0f, static_cast<float>(last_) + std::log2(minor_length));
-    if (!(lod < static_cast<float>(last_ + 1))) return coarsest();
-    const int fine = static_cast<int>(lod);
-    const float x = lod - static_cast<float>(fine);
-    const Value<C> finer = ewa_level(fine, s, t, major, minor);
+  // Lookup i of a batch, around (s, t).
+  Value<C> ewa(const EwaLanes& lanes, int i, float s, float t) {
+    const int fine = lanes.fine[i];
+    if (fine == EwaLanes::kBilinear) return bilinear(0, s, t);
+    if (fine == EwaLanes::kCoarsest) return coarsest();
+    const Value<C> finer = ewa_level(fine, s, t, lanes.finer[i]);
+    const float x = lanes.part[i];
     if (x == 0) return finer;  // as ever when the texture is magnified
-    return mix(x, finer, fine == last_ ? coarsest() : ewa_level(fine + 1, s, t, major, minor));
+    return mix(x, finer, fine == last_ ? coarsest() : ewa_level(fine + 1, s, t, lanes.coarser[i]));
   }
 
  private:
@@ -239,49 +279,56 @@ class MipMap::Sampler {
 
   // The weighted mean of the texels in an ellipse. Where all texels are finite those outside are not skipped but weigh
   // nothing: a branch that goes wrong at both ends of every row takes longer than they do.
-  Value<C> ewa_level(int level, float s, float t, const float (&d0)[2], const float (&d1)[2]) {
+  Value<C> ewa_level(int level, float s, float t, const Ellipse& e) {
     const Level& l = use(level);
-    const Ellipse e(l, s, t, d0, d1);
     const auto table = map_.byte_values_.data();
     float weights = 0;
     Texel<C> sum{};
     switch (l.storage) {
       case Storage::Bytes:
-        sum = weigh<true>(e, l, weights, [&](size_t i) { return decode_texel<C>(l.bytes.data() + i * C, table); });
+        sum = weigh<true>(e, l, l.bytes.data(), weights, [=](const uint8_t* at) { return decode_texel<C>(at, table); });
         break;
       case Storage::Halves:
-        sum = weigh<true>(e, l, weights, [&](size_t i) { return load_texel<C>(l.halves.data() + i * C); });
+        sum = weigh<true>(e, l, l.halves.data(), weights, [](const Imath::half* at) { return load_texel<C>(at); });
         sum *= map_.gain_;
         break;
       case Storage::Floats:
-        sum = weigh<false>(e, l, weights, [&](size_t i) { return load_texel<C>(l.floats.data() + i * C); });
+        sum = weigh<false>(e, l, l.floats.data(), weights, [](const float* at) { return load_texel<C>(at); });
         break;
     }
     if (!(weights > 0)) return bilinear(level, s, t);
     return to_value<C>(sum / weights);
   }
 
-  template <bool kFinite, class Fetch>
-  static Texel<C> weigh(const Ellipse& e, const Level& l, float& weight_sum, const Fetch& fetch) {
-    const float* const table = ewa_weights().data();
-    Texel<C> sum{};
-    float weights = 0;
-    for (int y = e.t0; y <= e.t1; ++y) {
-      const int row = wrap_texel<W>(y, l.height);
-      const size_t row_start = static_cast<size_t>(row) * l.width;
-      for (int x0 = e.s0; x0 <= e.s1; x0 += RowWeights::kLanes) {
-        const RowWeights w(e, x0, y);
-        for (int k = 0; k < std::min(RowWeights::kLanes, e.s1 - x0 + 1); ++k) {
-          const float weight = table[w.index[k]];
-          if (!kFinite && weight == 0) continue;
-          weights += weight;
-          const int column = wrap_texel<W>(x0 + k, l.width);
-          if (W != WrapMode::Black || (row >= 0 && column >= 0)) sum += weight * fetch(row_start + column);
+  // The weighted sum of the texels in an ellipse, and the sum of the weights. `first` is the level's first number. Each
+  // column of a block has a sum of its own: a single one would wait for itself from texel to texel.
+  template <bool kFinite, class T, class Fetch>
+  static Texel<C> weigh(const Ellipse& e, const Level& l, const T* first, float& weight_sum, const Fetch& fetch) {
+    constexpr int kColumns = BlockWeights::kColumns;
+    Texel<C> sums[kColumns]{};
+    Vector4 weights{};
+    for (int x0 = e.s0; x0 <= e.s1; x0 += kColumns) {
+      int column[kColumns];
+      for (int k = 0; k < kColumns; ++k) column[k] = wrap_texel<W>(x0 + k, l.width) * C;
+      const Ellipse::Rows range = e.rows_of(x0, kColumns);
+      for (int y0 = range.first; y0 <= range.last; y0 += BlockWeights::kRows) {
+        const BlockWeights block(e, x0, y0);
+        const int rows = std::min(BlockWeights::kRows, range.last - y0 + 1);
+        for (int j = 0; j < rows; ++j) {
+          const float* const w = block.weight + j * kColumns;
+          weights += Vector4{w[0], w[1], w[2], w[3]};
+          const int row = wrap_texel<W>(y0 + j, l.height);
+          if (W == WrapMode::Black && row < 0) continue;
+          const auto* const texels = first + static_cast<size_t>(row) * l.width * C;
+          for (int k = 0; k < kColumns; ++k) {
+            if (!kFinite && w[k] == 0) continue;
+            if (W != WrapMode::Black || column[k] >= 0) sums[k] += w[k] * fetch(texels + column[k]);
+          }
         }
       }
     }
-    weight_sum = weights;
-    return sum;
+    weight_sum = (weights[0] + weights[1]) + (weights[2] + weights[3]);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
 
   const MipMap& map_;
@@ -310,23 +357,43 @@ void put(float* const* out, int i, const std::array<float, C>& v) {
   for (size_t c = 0; c < C; ++c) out[c][i] = v[c];
 }
 
+// The longest of a footprint's components; NaN where any is.
+float widest(const LookupPoints& p, int i) {
+  const float x = std::max(std::abs(p.dsdx[i]), std::abs(p.dtdx[i]));
+  const float y = std::max(std::abs(p.dsdy[i]), std::abs(p.dtdy[i]));
+  return std::isfinite(x + y) ? std::max(x, y) : std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
-int MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const* out) const {
+template <class S>
+void MipMap::ewa_lookups(S& sampler, const LookupPoints& p, const MipFilter& filter, float* const* out) const {
   const float anisotropy = std::clamp(filter.max_anisotropy, 0.01f, 256.0f);
-  const auto at = [&](auto& sampler, int i) {
-    const float s = sampler.reduce(p.s[i]), t = sampler.reduce(p.t[i]);
-    if (!p.dsdx) return sampler.bilinear(0, s, t);
-    const float dx[2] = {p.dsdx[i], p.dtdx[i]}, dy[2] = {p.dsdy[i], p.dtdy[i]};
-    if (!std::isfinite(std::abs(dx[0]) + std::abs(dx[1]) + std::abs(dy[0]) + std::abs(dy[1])))
-      return sampler.coarsest();
-    if (!filter.trilinear) return sampler.ewa(s, t, dx, dy, anisotropy);
-    const float widest = std::max({std::abs(dx[0]), std::abs(dx[1]), std::abs(dy[0]), std::abs(dy[1])});
-    return sampler.trilinear(s, t, widest);
-  };
+  float s[kLanes], t[kLanes];
+  for (int first = 0; first < p.n; first += kLanes) {
+    const int n = std::min(kLanes, p.n - first);
+    const LookupPoints part{
+        n, p.s + first, p.t + first, p.dsdx + first, p.dtdx + first, p.dsdy + first, p.dtdy + first};
+    for_lanes(n, [&](int i) { s[i] = sampler.reduce(part.s[i]), t[i] = sampler.reduce(part.t[i]); });
+    const EwaLanes lanes(*this, part, s, t, anisotropy);
+    for (int i = 0; i < n; ++i) {
+      const bool good = std::isfinite(part.s[i]) && std::isfinite(part.t[i]);
+      put(out, first + i, good ? sampler.ewa(lanes, i, s[i], t[i]) : sampler.no_value());
+    }
+  }
+}
+
+int MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const* out) const {
   const auto run = [&](auto& sampler) {
-    for (int i = 0; i < p.n; ++i)
-      put(out, i, std::isfinite(p.s[i]) && std::isfinite(p.t[i]) ? at(sampler, i) : sampler.no_value());
+    if (p.dsdx && !filter.trilinear) return ewa_lookups(sampler, p, filter, out);
+    for (int i = 0; i < p.n; ++i) {
+      if (!std::isfinite(p.s[i]) || !std::isfinite(p.t[i])) {
+        put(out, i, sampler.no_value());
+        continue;
+      }
+      const float s = sampler.reduce(p.s[i]), t = sampler.reduce(p.t[i]);
+      put(out, i, p.dsdx ? sampler.trilinear(s, t, widest(p, i)) : sampler.bilinear(0, s, t));
+    }
   };
   return channels_ == 1 ? with_sampler<1>(run) : with_sampler<3>(run);
 }
