@@ -147,8 +147,9 @@ void Round::gather_hits(const int32_t* order, int n) {
     hits_.prim[i] = ray_hits_.prim[from];
   });
   if (ray_time_) {
-    hits_.time = arena_.floats(n);
-    gather(order, n, ray_time_, hits_.time);
+    float* time = arena_.floats(n);
+    gather(order, n, ray_time_, time);
+    hits_.time = time;
   }
   if (!ray_rx_o_) return;
   hits_.rx_o = arena_.vec3(n), hits_.rx_d = arena_.vec3(n), hits_.ry_o = arena_.vec3(n), hits_.ry_d = arena_.vec3(n);
@@ -156,6 +157,13 @@ void Round::gather_hits(const int32_t* order, int n) {
   gather(order, n, ray_rx_d_, hits_.rx_d);
   gather(order, n, ray_ry_o_, hits_.ry_o);
   gather(order, n, ray_ry_d_, hits_.ry_d);
+}
+
+/// All rays and hits as they stand, without copying.
+void Round::take_hits() {
+  hits_ = {
+      count_,         ray_o_,    ray_d_,    ray_hits_.t, ray_hits_.u, ray_hits_.v, ray_hits_.shape, ray_hits_.instance,
+      ray_hits_.prim, ray_time_, ray_rx_o_, ray_rx_d_,   ray_ry_o_,   ray_ry_d_};
 }
 
 void Round::find_surfaces() {
@@ -169,7 +177,10 @@ void Round::find_surfaces() {
     ray_of_[n++] = i;
   }
   sort_lanes(keys, n, ray_of_, arena_);
-  gather_hits(ray_of_, n);
+  // As where one material fills the view.
+  const bool in_place = n == count_ && std::is_sorted(ray_of_, ray_of_ + n);
+  if (in_place) take_hits();
+  else gather_hits(ray_of_, n);
   throughput_ = arena_.rgb(n), radiance_ = arena_.rgb(n);
   slot_ = arena_.alloc<int32_t>(n), stream_ = arena_.alloc<uint32_t>(n);
   for_lanes(n, [&](int i) {

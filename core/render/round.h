@@ -32,6 +32,7 @@ class Round final : public RayRound {
   void pass_through_interfaces();
   void report_lost_rays();
   void gather_hits(const int32_t* order, int n);
+  void take_hits();
   void shade_runs();
   bool needs_numbers() const;
   SampleKeys make_keys() const;

@@ -23,6 +23,21 @@ struct Corners {
   Vec3Lanes a, b, c;
   Corners(Arena& arena, int n) : a(arena.vec3(n)), b(arena.vec3(n)), c(arena.vec3(n)) {}
   Corners() = default;
+
+  /// Fills n lanes from `first` on with the vertices' vectors, 3 floats each, of triangles of one mesh; with 0 where the
+  /// mesh has no such vectors.
+  void gather(const std::vector<float>& vectors, const std::vector<uint32_t>& indices, const uint32_t* prim, int first,
+              int n) const {
+    const float* const v = vectors.data();
+    const auto at = [v](uint32_t i) { return Vec3f(v[3 * i], v[3 * i + 1], v[3 * i + 2]); };
+    for (int i = first; i < first + n; ++i) {
+      const uint32_t* index = &indices[3 * static_cast<size_t>(prim[i])];
+      const bool has = !vectors.empty();
+      a.set(i, has ? at(index[0]) : Vec3f(0, 0, 0));
+      b.set(i, has ? at(index[1]) : Vec3f(0, 0, 0));
+      c.set(i, has ? at(index[2]) : Vec3f(0, 0, 0));
+    }
+  }
 };
 
 /// What is gathered from meshes, lane by lane, before the arithmetic that vectorises.
@@ -31,42 +46,50 @@ struct TriangleLanes {
   float *u0, *v0, *u1, *v1, *u2, *v2;
   float* unit;  ///< The length of a world unit.
   bool any_normals = false, any_tangents = false;
+
+  /// Texture coordinates of triangles of one mesh, as Corners::gather(); pbrt's where the mesh has none.
+  void gather_uvs(const Mesh& mesh, const uint32_t* prim, int first, int count) const {
+    const bool has = !mesh.uvs.empty();
+    for (int i = first; i < first + count; ++i) {
+      const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(prim[i])];
+      const Vec2f a = has ? mesh.uv(index[0]) : Vec2f(0, 0), b = has ? mesh.uv(index[1]) : Vec2f(1, 0);
+      const Vec2f c = has ? mesh.uv(index[2]) : Vec2f(1, 1);
+      u0[i] = a.x, v0[i] = a.y, u1[i] = b.x, v1[i] = b.y, u2[i] = c.x, v2[i] = c.y;
+    }
+  }
 };
 
-TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int first, int count, Arena& arena) {
+TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int offset, int count, Arena& arena) {
   TriangleLanes t;
+  const int32_t* const shapes = h.shape + offset;
+  const uint32_t* const prim = h.prim + offset;
+  const auto shape_of = [&](int i) -> const SceneShape& { return scene.shapes[static_cast<size_t>(shapes[i])]; };
+  // Calls f(shape, first, n) for every stretch of lanes of one shape.
+  const auto for_shapes = [&](const auto& f) {
+    for (int first = 0, last; first < count; first = last) {
+      for (last = first + 1; last < count && shapes[last] == shapes[first];) ++last;
+      f(shape_of(first), first, last - first);
+    }
+  };
   t.p = Corners(arena, count);
   t.u0 = arena.floats(count), t.v0 = arena.floats(count), t.u1 = arena.floats(count);
   t.v1 = arena.floats(count), t.u2 = arena.floats(count), t.v2 = arena.floats(count), t.unit = arena.floats(count);
-  for (int i = 0; i < count; ++i) {
-    const SceneShape& shape = scene.shapes[static_cast<size_t>(h.shape[first + i])];
+  for_shapes([&](const SceneShape& shape, int first, int n) {
     const Mesh& mesh = *shape.mesh;
-    t.unit[i] = shape.unit;
-    const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(h.prim[first + i])];
-    t.p.a.set(i, mesh.position(index[0]));
-    t.p.b.set(i, mesh.position(index[1]));
-    t.p.c.set(i, mesh.position(index[2]));
+    t.p.gather(mesh.positions, mesh.indices, prim, first, n);
+    t.gather_uvs(mesh, prim, first, n);
+    std::fill_n(t.unit + first, n, shape.unit);
     t.any_normals |= !mesh.normals.empty();
     t.any_tangents |= !mesh.tangents.empty();
-    const bool has_uv = !mesh.uvs.empty();
-    const Vec2f a = has_uv ? mesh.uv(index[0]) : Vec2f(0, 0), b = has_uv ? mesh.uv(index[1]) : Vec2f(1, 0);
-    const Vec2f c = has_uv ? mesh.uv(index[2]) : Vec2f(1, 1);
-    t.u0[i] = a.x, t.v0[i] = a.y, t.u1[i] = b.x, t.v1[i] = b.y, t.u2[i] = c.x, t.v2[i] = c.y;
-  }
-  const auto gather_vectors = [&](Corners& to, bool tangents) {
+  });
+  const auto gather_vectors = [&](Corners& to, std::vector<float> Mesh::*vectors) {
     to = Corners(arena, count);
-    for (int i = 0; i < count; ++i) {
-      const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
-      const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(h.prim[first + i])];
-      const bool has = tangents ? !mesh.tangents.empty() : !mesh.normals.empty();
-      const auto get = [&](uint32_t v) { return !has ? Vec3f(0, 0, 0) : tangents ? mesh.tangent(v) : mesh.normal(v); };
-      to.a.set(i, get(index[0]));
-      to.b.set(i, get(index[1]));
-      to.c.set(i, get(index[2]));
-    }
+    for_shapes([&](const SceneShape& shape, int first, int n) {
+      to.gather(shape.mesh->*vectors, shape.mesh->indices, prim, first, n);
+    });
   };
-  if (t.any_normals) gather_vectors(t.n, false);
-  if (t.any_tangents) gather_vectors(t.s, true);
+  if (t.any_normals) gather_vectors(t.n, &Mesh::normals);
+  if (t.any_tangents) gather_vectors(t.s, &Mesh::tangents);
   return t;
 }
 

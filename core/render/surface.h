@@ -14,7 +14,7 @@ struct SurfaceHits {
   float *t = nullptr, *u = nullptr, *v = nullptr;
   int32_t *shape = nullptr, *instance = nullptr;
   uint32_t* prim = nullptr;
-  float* time = nullptr;             ///< In [0,1] over the transform times; null when nothing moves.
+  const float* time = nullptr;       ///< In [0,1] over the transform times; null when nothing moves.
   Vec3Lanes rx_o, rx_d, ry_o, ry_d;  ///< Null when no effect needs differentials.
 };
 
