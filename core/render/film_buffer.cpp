@@ -34,7 +34,6 @@ TileSums::TileSums(Vec2i tile, const FilterTable& filter)
       sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)) {}
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance) {
-  if (filter_->is_own_pixel()) return add_to_own_pixel(film_x, film_y, radiance);
   // Pixel p is reached when p + 0.5 is within the radius of the sample, the rim included, so that a sample in the middle
   // of its pixel reaches as far to both sides; but never beyond the reach, so that a box of radius 0.5 gives every
   // sample to exactly one pixel.
@@ -59,16 +58,46 @@ void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   }
 }
 
-/// add() for the most common filter, a box of one pixel.
-void TileSums::add_to_own_pixel(float film_x, float film_y, const RGB& radiance) {
-  const int x = static_cast<int>(std::floor(film_x)) - x0_, y = static_cast<int>(std::floor(film_y)) - y0_;
-  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
-  float* sums = &sums_[4 * (static_cast<size_t>(y) * static_cast<size_t>(width_) + static_cast<size_t>(x))];
+void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable) {
+  for (int first = 0; first < n; first += kBlock) {
+    const int count = std::min(kBlock, n - first);
+    const float *x = film_x + first, *y = film_y + first;
+    if (filter_->is_own_pixel()) {
+      add_to_own_pixels(count, x, y, radiance.from(first), usable + first);
+      continue;
+    }
+    for (int i = 0; i < count; ++i) {
+      if (usable[first + i]) add(x[i], y[i], radiance[first + i]);
+    }
+  }
+}
+
+/// add() for the most common filter, a box of one pixel. Samples of a pixel follow each other: they are added up in
+/// registers, because sums in memory would wait for each other.
+void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
+                                 const uint8_t* usable) {
+  int cell[kBlock + 1];
+  for_lanes(n, [&](int i) {
+    const int x = static_cast<int>(std::floor(film_x[i])) - x0_, y = static_cast<int>(std::floor(film_y[i])) - y0_;
+    const bool inside = (x >= 0) & (y >= 0) & (x < width_) & (y < height_) & (usable[i] != 0);
+    cell[i] = inside ? y * width_ + x : -1;
+  });
+  cell[n] = -2;
   const float w = filter_->weight(0, 0);
-  sums[0] += w * radiance.x;
-  sums[1] += w * radiance.y;
-  sums[2] += w * radiance.z;
-  sums[3] += w;
+  for (int i = 0; i < n;) {
+    const int at = cell[i];
+    if (at < 0) {
+      ++i;
+      continue;
+    }
+    float* const sums = &sums_[4 * static_cast<size_t>(at)];
+    float r = sums[0], g = sums[1], b = sums[2], weight = sums[3];
+    for (; cell[i] == at; ++i) {
+      r += w * radiance.r[i], g += w * radiance.g[i], b += w * radiance.b[i];
+      weight += w;
+    }
+    sums[0] = r, sums[1] = g, sums[2] = b, sums[3] = weight;
+  }
 }
 
 namespace {

@@ -48,6 +48,8 @@ class TileSums {
   TileSums(Vec2i tile, const FilterTable& filter);
   /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
   void add(float film_x, float film_y, const RGB& radiance);
+  /// Adds n samples in their order, those that are `usable`.
+  void add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable);
 
   /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
   const float* at(int x, int y) const {
@@ -56,7 +58,9 @@ class TileSums {
   }
 
  private:
-  void add_to_own_pixel(float film_x, float film_y, const RGB& radiance);
+  static constexpr int kBlock = 256;  ///< So many samples are looked at together.
+  void add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
+                         const uint8_t* usable);
 
   const FilterTable* filter_;
   int x0_, y0_, width_, height_;

@@ -129,18 +129,27 @@ class FilmRender {
     generate_camera_rays(worker, n, px, py, index);
     trace_chunk(worker);
     const SampleChunk& c = worker.chunk;
-    const float brightest = static_cast<float>(scene_.film().max_sample_luminance());
+    const uint8_t* usable = weigh_samples(worker);
     for (int i = 0; i < n; ++i) {
-      RGB l = c.radiance[i];
+      if (!usable[i]) worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
+    }
+    sums.add(n, c.film_x, c.film_y, c.radiance, usable);
+  }
+
+  /// Limits the samples' luminance and weighs them as the camera says. Returns which of them are numbers.
+  const uint8_t* weigh_samples(Worker& worker) const {
+    const SampleChunk& c = worker.chunk;
+    const float brightest = static_cast<float>(scene_.film().max_sample_luminance());
+    uint8_t* usable = worker.arena.alloc<uint8_t>(c.n);
+    for_lanes(c.n, [&](int i) {
+      const RGB l = c.radiance[i];
       const float y = luminance(l), size = std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
       // A channel may be below zero, where a light's colour is outside of Rec.709; luminance may not. -1e-5 is pbrt's.
-      if (!(y >= -1e-5f && size <= std::numeric_limits<float>::max())) {
-        worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
-        continue;
-      }
-      if (y > brightest) l *= brightest / y;
-      sums.add(c.film_x[i], c.film_y[i], l * c.ray_weight[i]);
-    }
+      usable[i] = (y >= -1e-5f) & (size <= std::numeric_limits<float>::max());
+      const float limit = y > brightest ? brightest / y : 1.0f, weight = c.ray_weight[i];
+      c.radiance.set(i, {l.x * limit * weight, l.y * limit * weight, l.z * limit * weight});
+    });
+    return usable;
   }
 
   void preview_tile(const TileSums& tile, Box2i window) const {
