@@ -31,7 +31,8 @@ TileSums::TileSums(Vec2i tile, const FilterTable& filter)
       y0_(tile.y * kTile - filter.y_reach()),
       width_(kTile + 2 * filter.x_reach()),
       height_(kTile + 2 * filter.y_reach()),
-      sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)) {}
+      sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)),
+      columns_(static_cast<size_t>(width_)) {}
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   // Pixel p is reached when p + 0.5 is within the radius of the sample, the rim included, so that a sample in the middle
@@ -45,15 +46,16 @@ void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   const int px1 = std::min(static_cast<int>(std::floor(dx + filter_->x_radius())), x0_ + width_ - 1);
   const int py0 = std::max(first(dy, filter_->y_radius(), filter_->y_reach()), y0_);
   const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
+  if (px0 > px1) return;
+  for (int x = px0; x <= px1; ++x) columns_[static_cast<size_t>(x - px0)] = filter_->column(static_cast<float>(x) - dx);
+  const float value[4] = {radiance.x, radiance.y, radiance.z, 1};
   for (int y = py0; y <= py1; ++y) {
+    const float* weights = filter_->row(static_cast<float>(y) - dy);
     float* sums =
         &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
     for (int x = px0; x <= px1; ++x, sums += 4) {
-      const float w = filter_->weight(static_cast<float>(x) - dx, static_cast<float>(y) - dy);
-      sums[0] += w * radiance.x;
-      sums[1] += w * radiance.y;
-      sums[2] += w * radiance.z;
-      sums[3] += w;
+      const float w = weights[columns_[static_cast<size_t>(x - px0)]];
+      for (int c = 0; c < 4; ++c) sums[c] += w * value[c];
     }
   }
 }

@@ -25,11 +25,12 @@ class FilterTable {
   /// True for a box filter whose samples reach their own pixel only, all with the same weight.
   bool is_own_pixel() const { return is_own_pixel_; }
   /// Weight at an offset from a pixel's centre within the radii.
-  float weight(float x, float y) const {
-    const int i = std::min(static_cast<int>(std::abs(x) * x_to_table_), kSize - 1);
-    const int j = std::min(static_cast<int>(std::abs(y) * y_to_table_), kSize - 1);
-    return table_[static_cast<size_t>(j * kSize + i)];
+  float weight(float x, float y) const { return row(y)[column(x)]; }
+  /// The same in two steps: the weights at an offset in y, and the place among them of an offset in x.
+  const float* row(float y) const {
+    return &table_[static_cast<size_t>(std::min(static_cast<int>(std::abs(y) * y_to_table_), kSize - 1) * kSize)];
   }
+  int column(float x) const { return std::min(static_cast<int>(std::abs(x) * x_to_table_), kSize - 1); }
 
  private:
   static constexpr int kSize = 64;
@@ -65,6 +66,7 @@ class TileSums {
   const FilterTable* filter_;
   int x0_, y0_, width_, height_;
   std::vector<float> sums_;
+  std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
 };
 
 /// The finished picture: linear RGB of the cropped window, row by row.
