@@ -112,7 +112,7 @@ void Progress::draw(double share, double seconds) const {
 }
 
 std::string duration_text(double seconds) {
-  if (seconds < 0.0995) return fmt::format("{:.0f} ms", 1000 * seconds);
+  if (seconds < 0.9995) return fmt::format("{:.0f} ms", 1000 * seconds);
   if (seconds < 99.95) return fmt::format("{:.1f} s", seconds);
   const int s = static_cast<int>(seconds + 0.5);
   if (s < 3600) return fmt::format("{} min {:02d} s", s / 60, s % 60);
