@@ -13,26 +13,11 @@
 #include <cmath>
 #include <mutex>
 
+#include "core/render/flush_denormals.h"
 #include "core/render/trace.h"
 
 namespace whit {
 namespace {
-
-/// Denormal numbers are flushed while a worker renders (they cost a hundred cycles each and mean nothing
-/// in a picture); the thread's own mode comes back afterwards.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 /// Camera samples traced together.
 constexpr int kChunk = 2048;
@@ -143,9 +128,8 @@ class FilmRender {
     uint8_t* usable = worker.arena.alloc<uint8_t>(c.n);
     for_lanes(c.n, [&](int i) {
       const RGB l = c.radiance[i];
-      const float y = luminance(l), size = std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
-      // A channel may be below zero, where a light's colour is outside of Rec.709; luminance may not. -1e-5 is pbrt's.
-      usable[i] = (y >= -1e-5f) & (size <= std::numeric_limits<float>::max());
+      const float y = luminance(l);
+      usable[i] = is_usable_sample(l);
       const float limit = y > brightest ? brightest / y : 1.0f, weight = c.ray_weight[i];
       c.radiance.set(i, {l.x * limit * weight, l.y * limit * weight, l.z * limit * weight});
     });

@@ -10,6 +10,7 @@
 #include "core/batch/gather.h"
 #include "core/batch/sort.h"
 #include "core/plugin/bump.h"
+#include "core/render/round_log.h"
 
 namespace whit {
 Round::Round(Worker& worker, int depth, int first, int count)
@@ -47,6 +48,7 @@ void Round::intersect() {
   }
   scene_.accel->intersect({count_, ray_o_, ray_d_, nullptr, time}, ray_hits_, depth_ == 0);
   if (scene_.plan.live(Effect::Interface)) pass_through_interfaces();
+  if (worker_.log) worker_.log->rays(*this);
 }
 
 /// Rays that hit an interface go on from behind it, without differentials, until all have met a material or left.
@@ -116,6 +118,7 @@ void Round::add_escaped() {
   const RGBLanes& sum = worker_.chunk.radiance;
   for (int i = 0; i < n; ++i) {
     const int ray = first_ + lanes[i], slot = rays_.slot[ray];
+    if (worker_.log) worker_.log->escaped(*this, lanes[i], radiance[i]);
     sum.set(slot, sum[slot] + rays_.throughput[ray] * radiance[i]);
   }
 }
@@ -196,6 +199,7 @@ void Round::find_surfaces() {
   if (hits_.rx_o) worker_.statistics.footprints += n;
   shade_runs();
   if (needs_numbers()) keys_ = make_keys();
+  if (worker_.log) worker_.log->surfaces(*this);
 }
 
 /// Splits the points into runs of one material, tilts normals by bump maps and asks for the lobes.
@@ -229,6 +233,7 @@ void Round::add_emitted() {
     const Emission& emission = scene_.emissions[static_cast<size_t>(e)];
     if (emission.two_sided || dot(points_.ng[i], points_.wo[i]) > 0) {
       radiance_.set(i, radiance_[i] + emission.radiance);
+      if (worker_.log) worker_.log->emitted(*this, i, emission.radiance);
     }
   }
 }

@@ -27,6 +27,7 @@ class Round final : public RayRound {
   void deliver();
 
  private:
+  friend class RoundLog;
   using Run = MaterialRun;
 
   void pass_through_interfaces();

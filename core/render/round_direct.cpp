@@ -6,6 +6,7 @@
 #include "core/base/fastmath.h"
 #include "core/batch/gather.h"
 #include "core/render/round.h"
+#include "core/render/round_log.h"
 
 namespace whit {
 namespace {
@@ -70,6 +71,7 @@ void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples,
   const StageScope stage(worker_.clock(), Stage::Shadow);
   int32_t* lanes = arena_.alloc<int32_t>(hits_.n);
   int n = 0;
+  if (worker_.log) worker_.log->light(*this, light, samples, contribution);
   for (int i = 0; i < hits_.n; ++i) {
     // Not "> 0": a NaN must reach the film's counter.
     lanes[n] = i;
@@ -98,6 +100,7 @@ void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples,
   for (int i = 0; i < n; ++i) {
     const int to = lanes[i];
     const float open = blocked[i] ? 0.0f : 1.0f;
+    if (worker_.log) worker_.log->shadow(*this, to, blocked[i] != 0);
     radiance_.r[to] += open * contribution.r[to];
     radiance_.g[to] += open * contribution.g[to];
     radiance_.b[to] += open * contribution.b[to];

@@ -6,6 +6,7 @@
 #include "core/base/fastmath.h"
 #include "core/base/hash.h"
 #include "core/render/round.h"
+#include "core/render/round_log.h"
 
 namespace whit {
 
@@ -104,6 +105,7 @@ void Round::append_children(const Spawned& reflected, const Spawned& refracted, 
     next.throughput.set(to, throughput_[i] * weight);
     next.slot[to] = slot_[i];
     next.stream[to] = hash_combine(stream_[i], branch);
+    if (worker_.log) worker_.log->spawned(*this, i, branch == 1, wi, weight);
     if (next.rx_o) {
       next.rx_o.set(to, s.rx_o[i]), next.rx_d.set(to, s.rx_d[i]);
       next.ry_o.set(to, s.ry_o[i]), next.ry_d.set(to, s.ry_d[i]);

@@ -1,6 +1,9 @@
 // From camera samples to radiances: the depth-by-depth loop over batches of rays.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "core/render/worker.h"
 
 namespace whit {
@@ -11,6 +14,13 @@ inline constexpr int kBatch = 1024;
 /// Fills worker.chunk with the camera samples of `n` (pixel, index) pairs: film positions, times, and the
 /// rays of depth 0.
 void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_t* py, const uint32_t* index);
+
+/// Whether a sample can be part of a picture: finite, and of no negative luminance. A channel may be below zero, where a
+/// light's colour is outside of Rec.709. -1e-5 is pbrt's.
+inline bool is_usable_sample(const RGB& l) {
+  const float size = std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
+  return (luminance(l) >= -1e-5f) & (size <= std::numeric_limits<float>::max());
+}
 
 /// Traces the chunk's rays until none is left; worker.chunk.radiance holds the result.
 void trace_chunk(Worker& worker);

@@ -46,6 +46,8 @@ struct MaterialRun {
   bool scatters = false, mirrors = false, refracts = false;  ///< Which kinds of lobes it has.
 };
 
+class RoundLog;
+
 /// Everything a worker thread needs and no other may touch.
 class Worker {
  public:
@@ -56,6 +58,7 @@ class Worker {
   Arena arena;
   SampleChunk chunk;
   RenderStatistics statistics;
+  RoundLog* log = nullptr;  ///< Told what happens to the rays; null but for a single sample that is retraced.
 
   /// Runs while the worker renders a tile of a render that is timed; null otherwise.
   StageClock* clock() { return clock_ ? &*clock_ : nullptr; }

@@ -301,6 +301,7 @@ class Builder {
     const ShapeDescription& d = description().shapes[loaded.description];
     Shape& plugin = *scene_->bound.shapes[loaded.description].plugin;
     SceneShape shape;
+    shape.where = d.where;
     shape.material = scene_->bound.shape_material[loaded.description];
     shape.passes_through = scene_->materials[static_cast<size_t>(shape.material)]->is_interface();
     // Given normals are mirrored with the rest, and stay on their side; so does all of a moving shape, as in pbrt-v3.

@@ -53,6 +53,7 @@ struct SceneShape {
   int sort_key = 0;             ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
   int emission = -1;            ///< Index into Scene::emissions.
   float unit = 1;               ///< The length of a world unit in the shape's group.
+  SourcePos where;              ///< Its statement.
   bool flips = false;           ///< ReverseOrientation XOR handedness (meshes with normals: alone): normals flip.
   bool passes_through = false;  ///< Its material is an interface: rays go on.
 };

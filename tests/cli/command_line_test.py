@@ -282,6 +282,27 @@ class Rendering(Case):
                 self.good(*flags, "--quiet", "--display", "none", "-o", "pixel%d.exr" % i)
                 self.assertEqual(exr_windows(self.path("pixel%d.exr" % i)), ((3, 4, 3, 4), (0, 0, 31, 23)))
 
+    def test_debug_pixel(self):
+        for asked in ("16,12,1", "16,12"):
+            before = self.files()
+            account = self.good("a scene.pbrt", "--debug-pixel", asked)
+            self.assertRegex(account, r"^sample \d of pixel 16,12: film position ")
+            self.assertRegex(account, r"meets the shape of a scene.pbrt:7:3 at distance 4\.")
+            self.assertRegex(account, r"(?m)^radiance \[[^]]*\], luminance [0-9.]+$")
+            self.assertEqual(self.files(), before)
+        self.fails(2, "--debug-pixel: there are pixels 0,0 to 31,23 with samples 0 to 1", "a scene.pbrt",
+                   "--debug-pixel", "16,12,2")
+        for wrong in ("16", "16,12,0,0", "16,,1", "1.5,2", "x"):
+            self.fails(2, "--debug-pixel needs x,y or x,y,sample, like 320,240,7", "a scene.pbrt", "--debug-pixel", wrong)
+
+    def test_an_invalid_sample_is_located(self):
+        self.write("b.pbrt", SCENE.replace("WorldBegin", 'WorldBegin LightSource "infinite" "rgb L" [-9 1 1]'))
+        code, _, err = self.whit("b.pbrt", "--quiet", "--display", "none", "--outfile", "out.exr", "--pixel", "3,4")
+        self.assertEqual(code, 0)
+        self.assertRegex(err, "2 samples were not valid .*; the first is sample 0 of pixel 3,4 "
+                              r"\(--debug-pixel 3,4,0 tells how it comes about\)")
+        self.assertIn("not a valid sample", self.good("b.pbrt", "--debug-pixel", "3,4,0"))
+
     def test_several_worlds_in_one_file(self):
         second = SCENE.replace("film-name", "second").replace('Shape "sphere"', 'Shape "disk"')
         self.write("two.pbrt", SCENE.replace("film-name", "first") + second)

@@ -123,6 +123,18 @@ class Tool(unittest.TestCase):
         self.assertEqual((code, said[-1]), (0, "1 passed, 0 failed"))
         self.assertFalse(os.path.exists(self.folder + "/out"))
 
+    def test_invalid_samples_fail(self):
+        # A sky of negative luminance behind the sphere: every sample that leaves is left out, and the picture is what it was.
+        self.add("shapes-sphere", "shapes-sphere")
+        path = self.folder + "/scenes/shapes-sphere.pbrt"
+        with open(path, encoding="utf-8") as f:
+            text = f.read()
+        with open(path, "w", encoding="utf-8") as f:
+            f.write(text.replace("WorldBegin", 'WorldBegin LightSource "infinite" "rgb L" [-9e-3 1e-3 1e-3]'))
+        code, said, _ = self.run_tool()
+        self.assertEqual((code, said[-1]), (1, "0 passed, 1 failed"))
+        self.assertIn("samples were not valid", "\n".join(said))
+
     def test_failing_pictures_are_left(self):
         self.add("shapes-sphere", "shapes-sphere")
         self.add("shapes-disk", "shapes-sphere")

@@ -325,7 +325,7 @@ class Differences(unittest.TestCase):
           Translate 0 0 5
           ReverseOrientation
           Shape "disk" "float radius" [0.5]''', samples=1),
-                          said="samples were not finite and were left out")
+                          said="samples were not valid")
         self.assertTrue(numpy.isfinite(rgb).all())
 
     # ---- Files and commands ----

@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <set>
 
 #include "core/accel/accel.h"
+#include "core/render/debug_sample.h"
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/display_server.h"
@@ -27,6 +29,7 @@ struct Settings {
   OutputRequest output;
   std::vector<double> crop;
   std::vector<int> pixel;
+  std::string debug_pixel;
   int threads = 0, spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;
@@ -41,14 +44,14 @@ struct Settings {
 Arguments split_lists(const Arguments& args) {
   Arguments out;
   for (const std::string& arg : args) {
-    const bool crop = arg.rfind("--cropwindow=", 0) == 0, pixel = arg.rfind("--pixel=", 0) == 0;
+    const auto is_list = [](const std::string& flag) { return flag == "--cropwindow" || flag == "--pixel"; };
+    const size_t equals = arg.find('=');
     std::string rest = arg;
-    if (crop || pixel) {
-      const size_t equals = arg.find('=');
+    if (equals != std::string::npos && is_list(arg.substr(0, equals))) {
       out.push_back(arg.substr(0, equals));
       rest = arg.substr(equals + 1);
     }
-    const bool list = crop || pixel || (!out.empty() && (out.back() == "--cropwindow" || out.back() == "--pixel"));
+    const bool list = !out.empty() && is_list(out.back());
     for (size_t comma; list && (comma = rest.find(',')) != std::string::npos; rest = rest.substr(comma + 1)) {
       out.push_back(rest.substr(0, comma));
     }
@@ -68,6 +71,7 @@ void declare(CLI::App& app, Settings& s) {
   app.add_option("--spp", s.spp, "Samples per pixel, instead of the scene's")->check(CLI::Range(1, 1 << 30));
   app.add_option("--seed", s.seed, "Seed of the random numbers");
   app.add_option("--pixel", s.pixel, "Render one pixel: x,y")->expected(2)->allow_extra_args(false);
+  app.add_option("--debug-pixel", s.debug_pixel, "Say how a pixel comes about, without a picture: x,y or x,y,sample");
   app.add_option("--view", s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's");
   app.add_option("--ocio", s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one");
   app.add_option("--exposure", s.output.exposure, "Stops by which the display picture is brightened");
@@ -89,6 +93,21 @@ void declare(CLI::App& app, Settings& s) {
   app.add_flag("--verbose", s.verbose, "The same as --v 1");
 }
 
+/// The two or three whole numbers of "x,y,sample"; none when the text is anything else.
+std::vector<int> numbers_of(const std::string& text) {
+  std::vector<int> numbers;
+  const char *at = text.data(), *end = at + text.size();
+  for (int number = 0;; ++at) {
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc()) return {};
+    numbers.push_back(number);
+    at = next;
+    if (at == end) break;
+    if (*at != ',' || numbers.size() == 3) return {};
+  }
+  return numbers;
+}
+
 /// A flag whose values make no sense is wrong usage.
 std::string usage_problem(const Settings& s) {
   if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
@@ -97,6 +116,9 @@ std::string usage_problem(const Settings& s) {
   }
   if (!s.output.outfile.empty() && s.scenes.size() > 1) {
     return "--outfile with several scenes would write them over each other";
+  }
+  if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
+    return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
   }
   return {};
 }
@@ -192,7 +214,28 @@ class RenderJob {
     times_.build = since(start);
     if (int code = report(building); code != kDone) return code;
     if (!scene) return kSceneError;
+    if (!settings_.debug_pixel.empty()) return explain_pixel(*scene);
     return trace_and_write(*scene, output, textures);
+  }
+
+  /// What happens to the sample asked for; to the first that is no number, or else the brightest, when none is.
+  int explain_pixel(const Scene& scene) const {
+    const std::vector<int> asked = numbers_of(settings_.debug_pixel);
+    const Vec2i pixel(asked[0], asked[1]), size = scene.camera().film.resolution;
+    const int last = scene.samples_per_pixel - 1;
+    if (pixel.x < 0 || pixel.y < 0 || pixel.x >= size.x || pixel.y >= size.y ||
+        (asked.size() == 3 && (asked[2] < 0 || asked[2] > last))) {
+      say(fmt::format("whit: --debug-pixel: there are pixels 0,0 to {},{} with samples 0 to {}", size.x - 1, size.y - 1,
+                      last));
+      return kUsage;
+    }
+    const auto place = [this](SourcePos where) {
+      const SourcePlace p = sources_.place(where);
+      return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
+    };
+    const uint32_t sample = asked.size() == 3 ? static_cast<uint32_t>(asked[2]) : odd_sample(scene, pixel);
+    fmt::print("{}", debug_sample(scene, pixel, sample, place));
+    return kDone;
   }
 
   OutputRequest output_request() const {
@@ -281,10 +324,12 @@ class RenderJob {
   }
 
   static void report_invalid(const RenderStatistics& s) {
-    say(
-        fmt::format("whit: warning: {} samples were not finite and were left out; the first is sample {} of "
-                    "pixel {},{}",
-                    s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y));
+    say(fmt::format(
+        "whit: warning: {} samples were not valid (NaN, infinite or of negative luminance) and were left out; "
+        "the first is sample {} of "
+        "pixel {},{} (--debug-pixel {},{},{} tells how it comes about)",
+        s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y,
+        s.first_invalid_pixel.x, s.first_invalid_pixel.y, s.first_invalid_sample));
   }
 
   void summarise(const Scene& scene, const RenderResult& r, const OutputPlan& output,
