@@ -268,6 +268,7 @@ std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour
   if (colour) out += "\033[0m";
   out += " " + diagnostic.message + "\n";
   if (located) out += excerpt(diagnostic.where, colour);
+  if (find(diagnostic.other.file)) out += "  and " + location(diagnostic.other) + "\n";
   if (!diagnostic.remedy.empty()) out += "  " + diagnostic.remedy + "\n";
   return out;
 }

@@ -27,6 +27,7 @@ struct Diagnostic {
   SourcePos where;
   std::string message;  ///< What is wrong, naming the thing: "sphere has no parameter \"raduis\"".
   std::string remedy;   ///< What to do, or what was done instead: "did you mean \"radius\"?"; may be empty.
+  SourcePos other{};    ///< A second place that it is about, where there is one.
 };
 
 /// An ordered collection of diagnostics. Not thread-safe: one per stage, merged by append().

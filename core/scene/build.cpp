@@ -10,6 +10,7 @@
 
 #include "core/scene/alpha.h"
 #include "core/scene/bake.h"
+#include "core/scene/coincidence.h"
 #include "core/scene/motion.h"
 #include "core/scene/scene.h"
 
@@ -267,7 +268,9 @@ class Builder {
     for (Group& group : groups_) {
       if (group.shapes.empty()) continue;
       group.accel_group = &group == &groups_[0] ? Accel::kWorld : scene_->accel->add_group();
+      const size_t first = scene_->shapes.size();
       for (const LoadedShape& loaded : group.shapes) add_shape(group, loaded, std::move(*next++));
+      attach_shapes(group, first);
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
     }
     if (const auto& [triangles, shapes, first] = degenerate_; triangles > 0) {
@@ -330,11 +333,48 @@ class Builder {
       diagnostics_.warning(d.where, "a moving shape cannot be an area light",
                            "it is shown without emission, as in pbrt");
     }
-    auto alpha = make_alpha_test(shape, plugin, group.space.to_world() * scene_->space.from_world());
-    attach(group, shape, index, alpha.get());
-    if (alpha) scene_->alpha_tests.push_back(std::move(alpha));
+    plugins_.push_back(&plugin);
     scene_->shapes.push_back(shape);
     if (shape.emission >= 0) lit_shapes_.push_back({index, group.accel_group == Accel::kWorld});
+  }
+
+  /// Hands a group's shapes, those from `first` on, to the ray tracer.
+  void attach_shapes(const Group& group, size_t first) {
+    const std::vector<SceneShape>& shapes = scene_->shapes;
+    std::vector<std::unique_ptr<AlphaTest>> tests(shapes.size());
+    std::vector<bool> has_alpha(shapes.size());
+    for (size_t i = first; i < shapes.size(); ++i) {
+      tests[i] = make_alpha_test(shapes[i], *plugins_[i], group.space.to_world() * scene_->space.from_world());
+      has_alpha[i] = tests[i] != nullptr;
+    }
+    Coincidences found = find_coincidences(shapes, static_cast<int>(first), static_cast<int>(shapes.size()), has_alpha);
+    for (auto& [lower, cut] : found.cuts) {
+      auto& test = tests[static_cast<size_t>(lower)];
+      test = both(std::move(test), std::move(cut));
+    }
+    report_coincidences(found.pairs, has_alpha);
+    for (size_t i = first; i < shapes.size(); ++i) {
+      attach(group, shapes[i], static_cast<int>(i), tests[i].get());
+      if (tests[i]) scene_->alpha_tests.push_back(std::move(tests[i]));
+    }
+  }
+
+  /// Names both shapes of the first few pairs.
+  void report_coincidences(const std::vector<Coincidence>& pairs, const std::vector<bool>& has_alpha) {
+    constexpr size_t kNamed = 3;
+    for (size_t i = 0; i < std::min(pairs.size(), kNamed); ++i) {
+      const SceneShape& lower = scene_->shapes[static_cast<size_t>(pairs[i].lower)];
+      const SceneShape& upper = scene_->shapes[static_cast<size_t>(pairs[i].upper)];
+      const std::string more = i + 1 == kNamed && pairs.size() > kNamed
+                                   ? fmt::format("; there are {} more such pairs", pairs.size() - kNamed)
+                                   : "";
+      diagnostics_.add({Severity::Warning, ErrorClass::Scene, lower.where,
+                        "a part of this shape's surface is also another's" + more,
+                        has_alpha[static_cast<size_t>(pairs[i].upper)]
+                            ? "rounding decides which is seen, for the other may have holes (alpha); move them apart"
+                            : "the later one is seen there; move them apart to see the other",
+                        upper.where});
+    }
   }
 
   void attach(const Group& group, const SceneShape& shape, int index, const AlphaTest* alpha) {
@@ -484,6 +524,7 @@ class Builder {
   std::map<std::pair<int, int>, int> keys_;
   std::vector<std::pair<int, bool>> lit_shapes_;
   DegenerateTriangles degenerate_;
+  std::vector<const Shape*> plugins_;  ///< Of Scene::shapes.
   double scene_radius_ = 1;
 };
 

@@ -196,7 +196,7 @@ class Rendering(Case):
 
     def test_equal_messages_are_shown_three_times(self):
         # Lines 7 to 1006, as an exporter with a mistake writes them.
-        self.write("many.pbrt", SCENE.replace('  Shape "sphere"\n', '  Shape "sphere" "float raduis" [1]\n' * 1000))
+        self.write("many.pbrt", SCENE.replace('  Shape "sphere"\n', '  Shape "sphere" "float raduis" [1] Translate 3 0 0\n' * 1000))
         code, _, err = self.whit("many.pbrt", "--quiet")
         self.assertEqual(code, 0)
         self.assertEqual(re.findall(r"(?m)^many.pbrt:(\d+):18: warning: ", err), ["7", "8", "9"])

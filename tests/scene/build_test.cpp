@@ -31,7 +31,7 @@ TEST(Build, MaxdepthMayBeZeroOrLess) {
 TEST(Build, DegenerateTrianglesOfAllShapesAreSaidOnce) {
   // One triangle with area, and one with two corners alike.
   const std::string mesh =
-      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 1 1] \"point P\" [-1 -1 0  1 -1 0  1 1 0]\n";
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 1 1] \"point P\" [-1 -1 0  1 -1 0  1 1 0] Translate 0 0 1\n";
   EXPECT_EQ(said_of("Shape \"sphere\""), "");
   EXPECT_NE(said_of(mesh).find("test.pbrt:3:1: warning: 1 degenerate triangle (no area)\n"), std::string::npos)
       << said_of(mesh);
@@ -47,7 +47,7 @@ TEST(Build, ShapesKeepTheOrderOfTheFile) {
   constexpr size_t kCount = 200;
   std::string text = "WorldBegin\n";
   for (size_t i = 0; i < kCount; ++i) {
-    text += "Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [";
+    text += "Translate 0 0 1 Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [";
     for (size_t k = 0; k <= i; ++k) text += "0 1 2 0 0 1 ";
     text += "]\n";
   }
