@@ -544,12 +544,6 @@ bool all_finite(const std::vector<T>& values) {
 }
 
 std::string check_mesh(const PlyMesh& mesh) {
-  // Beyond the range of float there is no picture either.
-  for (const double v : mesh.positions) {
-    if (!(std::abs(v) <= static_cast<double>(std::numeric_limits<float>::max()))) {
-      return "PLY file has a vertex that is not finite";
-    }
-  }
   if (!all_finite(mesh.normals)) return "PLY file has a normal that is not finite";
   if (!all_finite(mesh.uvs)) return "PLY file has a surface parameter (u, v) that is not finite";
   const size_t vertices = mesh.positions.size() / 3;

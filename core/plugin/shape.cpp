@@ -1,6 +1,9 @@
 #include "core/plugin/shape.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace whit {
 namespace {
@@ -37,7 +40,12 @@ Vec3d transform_area(const Mat4d& m, const Vec3d& n) {
   return n.x * y.cross(z) + n.y * z.cross(x) + n.z * x.cross(y);
 }
 
+/// Also where a corner is not finite, or not as a float.
 bool has_no_area(const double* a, const double* b, const double* c) {
+  const auto is_float = [](double v) { return std::abs(v) <= static_cast<double>(std::numeric_limits<float>::max()); };
+  for (int k = 0; k < 3; ++k) {
+    if (!is_float(a[k]) || !is_float(b[k]) || !is_float(c[k])) return true;
+  }
   Vec3d e1{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, e2{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
   // Brought to size one first: the squares of a mesh of size 1e-200 underflow.
   const auto largest = [](const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); };
@@ -85,17 +93,54 @@ bool Binding<UvList>::read(const Parameter& p, const BindContext& ctx, const Ran
 
 }  // namespace detail
 
+namespace {
+
+/// Which triangles are an earlier one again: the same corners in the same order, whichever comes first.
+std::vector<bool> find_repeated(const std::vector<uint32_t>& indices, size_t vertices) {
+  const size_t triangles = indices.size() / 3;
+  const auto rotated = [&](uint32_t t) {
+    const uint32_t* i = &indices[3 * size_t{t}];
+    const int first = i[0] <= i[1] && i[0] <= i[2] ? 0 : i[1] <= i[2] ? 1 : 2;
+    return std::array<uint32_t, 3>{i[first], i[(first + 1) % 3], i[(first + 2) % 3]};
+  };
+  // Sorted by counting by their least corner, in the order of the mesh; few triangles share one.
+  std::vector<uint32_t> start(vertices + 1), order(triangles);
+  for (uint32_t t = 0; t < triangles; ++t) ++start[rotated(t)[0] + 1];
+  for (size_t v = 0; v < vertices; ++v) start[v + 1] += start[v];
+  for (uint32_t t = 0; t < triangles; ++t) order[start[rotated(t)[0]]++] = t;
+  std::vector<bool> repeated(triangles);
+  for (size_t first = 0, last; first < triangles; first = last) {
+    last = first + 1;
+    while (last < triangles && rotated(order[last])[0] == rotated(order[first])[0]) ++last;
+    if (last - first < 2) continue;
+    std::stable_sort(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last),
+                     [&](uint32_t a, uint32_t b) { return rotated(a) < rotated(b); });
+    for (size_t k = first + 1; k < last; ++k) {
+      if (rotated(order[k]) == rotated(order[k - 1])) repeated[order[k]] = true;
+    }
+  }
+  return repeated;
+}
+
+}  // namespace
+
 size_t remove_degenerate_triangles(MeshData& mesh) {
   const double* p = mesh.positions.data();
+  const std::vector<bool> repeated = find_repeated(mesh.indices, mesh.positions.size() / 3);
   size_t kept = 0;
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const uint32_t a = mesh.indices[i], b = mesh.indices[i + 1], c = mesh.indices[i + 2];
-    if (has_no_area(p + 3 * size_t{a}, p + 3 * size_t{b}, p + 3 * size_t{c})) continue;
+    if (repeated[i / 3] || has_no_area(p + 3 * size_t{a}, p + 3 * size_t{b}, p + 3 * size_t{c})) continue;
     mesh.indices[kept++] = a, mesh.indices[kept++] = b, mesh.indices[kept++] = c;
   }
   const size_t removed = (mesh.indices.size() - kept) / 3;
   mesh.indices.resize(kept);
   return removed;
+}
+
+void AnalyticShape::report_no_surface(Diagnostics& diagnostics, SourcePos statement, const std::string& why) {
+  diagnostics.warning(statement, "shape without surface: " + why, "left out; the picture is the same without");
+  no_surface_ = true;
 }
 
 void AnalyticShape::place(const Mat4d& object_to_scene, bool reverse_orientation) {

@@ -22,6 +22,9 @@ class Shape : public Plugin {
 /// the value's own place.
 inline constexpr Range kCoordinates{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 
+/// For radii: a shape of radius 0 is left out with a warning (AnalyticShape::has_no_surface()).
+inline constexpr Range kNotNegative{0};
+
 /// The alpha parameters of shapes that can be cut out.
 inline auto alpha_param() {
   return param(&Shape::alpha, "alpha", 1.0f, Unit::None, "Where this is exactly 0 the surface is cut away.");
@@ -42,8 +45,9 @@ struct MeshData {
   size_t degenerate = 0;          ///< How many triangles of the user's were left out because they have no area.
 };
 
-/// Removes the triangles that have no area (two corners alike, or all three on a line as far as double
-/// precision can tell). Returns how many there were.
+/// Removes the triangles that have no area (two corners alike, or all three on a line as far as double precision can
+/// tell), a corner that is not finite, or all corners in common with an earlier one, in the same order. Returns how many
+/// there were.
 size_t remove_degenerate_triangles(MeshData& mesh);
 
 /// A shape that is, or turns itself into, a triangle mesh.
@@ -130,6 +134,9 @@ class AnalyticShape : public Shape {
   /// True when normals flip: ReverseOrientation XOR the transform swaps handedness.
   bool flips_normals() const { return flips_; }
 
+  /// True when there is nothing to hit, as with a radius of 0: the shape is left out, and nothing else is asked of it.
+  bool has_no_surface() const { return no_surface_; }
+
   virtual Box3d object_bounds() const = 0;
 
   /// Finds the nearest hits, without cancellation: t within 2 ulp of the exact root.
@@ -157,8 +164,14 @@ class AnalyticShape : public Shape {
   virtual void sample_lanes(const ShapeSampleLanes& s) const;
 
  protected:
+  /// For check(): warns that the statement's shape has no surface, and why; it is left out.
+  void report_no_surface(Diagnostics& diagnostics, SourcePos statement, const std::string& why);
+
   Mat4d object_to_scene_, scene_to_object_;
   bool flips_ = false;
+
+ private:
+  bool no_surface_ = false;
 };
 
 /// Cubic Bezier segments with widths. All face the ray. Flat: and are shaded so. Cylinder: shaded as a tube. Ribbon:

@@ -52,8 +52,13 @@ Mat4d normal_matrix(const Mat4d& m) {
 }
 
 Box3d mesh_bounds(const MeshData& data, const Mat4d& m) {
+  // Of the vertices that triangles have: others may be anywhere, or not be numbers.
+  std::vector<bool> used(data.positions.size() / 3, data.indices.empty());
+  for (const uint32_t i : data.indices) used[i] = true;
   Box3d box;
-  for (size_t i = 0; i < data.positions.size() / 3; ++i) box.extendBy(transform_point(m, point_of(data.positions, i)));
+  for (size_t i = 0; i < used.size(); ++i) {
+    if (used[i]) box.extendBy(transform_point(m, point_of(data.positions, i)));
+  }
   return box;
 }
 

@@ -7,7 +7,7 @@
 
 namespace whit {
 
-/// Bounds of the mesh's points under `m`, in double.
+/// Bounds of the mesh's triangles under `m`, in double; of all its points when it has no indices.
 Box3d mesh_bounds(const MeshData& data, const Mat4d& m);
 
 /// Transforms a mesh by `object_to_group` into floats. Triangles without area are dropped and counted.

@@ -199,7 +199,7 @@ class Builder {
       MeshData points;
       points.positions = loaded.curves.control_points;
       loaded.bounds = mesh_bounds(points, to_world);
-    } else if (auto* analytic = dynamic_cast<AnalyticShape*>(&shape)) {
+    } else if (auto* analytic = dynamic_cast<AnalyticShape*>(&shape); !analytic->has_no_surface()) {
       const Box3d box = analytic->object_bounds();
       for (int c = 0; c < 8; ++c) {
         loaded.bounds.extendBy(transform_point(
@@ -274,10 +274,11 @@ class Builder {
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
     }
     if (const auto& [triangles, shapes, first] = degenerate_; triangles > 0) {
-      diagnostics_.warning(first,
-                           fmt::format("{} degenerate triangle{} (no area)", triangles, triangles == 1 ? "" : "s") +
-                               (shapes > 1 ? fmt::format(" in {} shapes, the first here", shapes) : ""),
-                           "left out; the picture is the same without");
+      diagnostics_.warning(
+          first,
+          fmt::format("{} degenerate triangle{} (no area, or repeated)", triangles, triangles == 1 ? "" : "s") +
+              (shapes > 1 ? fmt::format(" in {} shapes, the first here", shapes) : ""),
+          "left out; the picture is the same without");
     }
   }
 

@@ -14,7 +14,8 @@ struct Cone final : AnalyticShape {
   float radius, height, phimax;
 
   /// Also derives the numbers below, which hold from here on.
-  void check(Diagnostics&, SourcePos) override {
+  void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (radius == 0) return report_no_surface(diagnostics, statement, "the radius is 0");
     r_ = static_cast<double>(radius), h_ = static_cast<double>(height);
     sweep_ = Sweep(static_cast<double>(phimax));
     // Around the tip, where it has no constant term: h^2 (x^2 + y^2) = r^2 z^2.
@@ -62,7 +63,7 @@ struct Cone final : AnalyticShape {
 const Register<Cone> cone{"shape",
                           "cone",
                           "An open cone with its base in the xy plane and its tip on the z axis.",
-                          param(&Cone::radius, "radius", 1.0f, Unit::Length, "Radius of the base.", kPositive),
+                          param(&Cone::radius, "radius", 1.0f, Unit::Length, "Radius of the base.", kNotNegative),
                           param(&Cone::height, "height", 1.0f, Unit::Length, "Height of the tip.", kPositive),
                           param(&Cone::phimax, "phimax", 360.0f, Unit::Degrees,
                                 "Sweep around z, from x; above 360 is a full turn.", kPositive)};

@@ -14,7 +14,8 @@ struct Cylinder final : AnalyticShape {
 
   /// Also derives the numbers below, which hold from here on.
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (zmin == zmax) diagnostics.error(statement, "cylinder has no surface", "zmin must be below zmax");
+    if (radius == 0) return report_no_surface(diagnostics, statement, "the radius is 0");
+    if (zmin == zmax) return report_no_surface(diagnostics, statement, "zmin is zmax");
     r_ = static_cast<double>(radius);
     z_min_ = static_cast<double>(std::min(zmin, zmax)), z_max_ = static_cast<double>(std::max(zmin, zmax));
     sweep_ = Sweep(static_cast<double>(phimax));
@@ -57,7 +58,7 @@ struct Cylinder final : AnalyticShape {
 const Register<Cylinder> cylinder{"shape",
                                   "cylinder",
                                   "An open cylinder around the z axis.",
-                                  param(&Cylinder::radius, "radius", 1.0f, Unit::Length, "Radius.", kPositive),
+                                  param(&Cylinder::radius, "radius", 1.0f, Unit::Length, "Radius.", kNotNegative),
                                   param(&Cylinder::zmin, "zmin", -1.0f, Unit::Length, "Lower end."),
                                   param(&Cylinder::zmax, "zmax", 1.0f, Unit::Length, "Upper end."),
                                   param(&Cylinder::phimax, "phimax", 360.0f, Unit::Degrees,

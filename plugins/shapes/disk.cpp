@@ -30,9 +30,8 @@ struct Disk final : AnalyticShape {
 
   /// Also derives the numbers below, which hold from here on.
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (innerradius >= radius) {
-      diagnostics.error(statement, "disk has no surface", "innerradius must be below radius");
-    }
+    if (radius == 0) return report_no_surface(diagnostics, statement, "the radius is 0");
+    if (innerradius >= radius) return report_no_surface(diagnostics, statement, "innerradius is not below radius");
     h_ = static_cast<double>(height), r_ = static_cast<double>(radius), inner_ = static_cast<double>(innerradius);
     sweep_ = Sweep(static_cast<double>(phimax));
   }
@@ -88,7 +87,7 @@ const Register<Disk> disk{
     "disk",
     "A disk, or a sector of a ring, across the z axis.",
     param(&Disk::height, "height", 0.0f, Unit::Length, "Where on the z axis it lies."),
-    param(&Disk::radius, "radius", 1.0f, Unit::Length, "Outer radius.", kPositive),
+    param(&Disk::radius, "radius", 1.0f, Unit::Length, "Outer radius.", kNotNegative),
     param(&Disk::innerradius, "innerradius", 0.0f, Unit::Length, "Radius of the hole.", kNonNegative),
     param(&Disk::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",
           kPositive)};

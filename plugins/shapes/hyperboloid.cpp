@@ -23,7 +23,7 @@ struct Hyperboloid final : AnalyticShape {
     a_ = p1.value, b_ = p2.value;
     if (a_.z == b_.z) diagnostics.error(statement, "hyperboloid is flat", "p1 and p2 must differ in z");
     if (squared_radius(a_) == 0 && squared_radius(b_) == 0) {
-      diagnostics.error(statement, "hyperboloid has no surface", "p1 or p2 must be off the z axis");
+      return report_no_surface(diagnostics, statement, "p1 and p2 are on the z axis");
     }
     if (b_.z == 0) std::swap(a_, b_);
     z_min_ = std::min(a_.z, b_.z), z_max_ = std::max(a_.z, b_.z);

@@ -19,9 +19,8 @@ struct Paraboloid final : AnalyticShape {
     v_min_ = static_cast<double>(std::min(zmin, zmax)), z_max_ = static_cast<double>(std::max(zmin, zmax));
     // The surface begins at z = 0, wherever v does.
     z_min_ = std::max(v_min_, 0.0);
-    if (!(z_min_ < z_max_)) {
-      diagnostics.error(statement, "paraboloid has no surface", "it needs zmax above 0 and above zmin");
-    }
+    if (radius == 0) return report_no_surface(diagnostics, statement, "the radius is 0");
+    if (!(z_min_ < z_max_)) return report_no_surface(diagnostics, statement, "zmax is not above 0 and zmin");
     k_ = z_max_ / (r_ * r_);
     quadric_ = {k_, 0, -0.5, 0};
     sweep_ = Sweep(static_cast<double>(phimax));
@@ -72,7 +71,7 @@ const Register<Paraboloid> paraboloid{
     "shape",
     "paraboloid",
     "A paraboloid around the z axis, open upwards, with its lowest point at the origin.",
-    param(&Paraboloid::radius, "radius", 1.0f, Unit::Length, "Radius at zmax.", kPositive),
+    param(&Paraboloid::radius, "radius", 1.0f, Unit::Length, "Radius at zmax.", kNotNegative),
     param(&Paraboloid::zmin, "zmin", 0.0f, Unit::Length, "Lower end."),
     param(&Paraboloid::zmax, "zmax", 1.0f, Unit::Length, "Upper end, above 0."),
     param(&Paraboloid::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",

@@ -30,9 +30,8 @@ struct Sphere final : AnalyticShape {
     r_ = static_cast<double>(radius);
     const double a = zmin ? static_cast<double>(*zmin) : -r_, b = zmax ? static_cast<double>(*zmax) : r_;
     z_min_ = std::clamp(std::min(a, b), -r_, r_), z_max_ = std::clamp(std::max(a, b), -r_, r_);
-    if (z_min_ == z_max_) {
-      diagnostics.error(statement, "sphere has no surface between zmin and zmax", "zmin must be below zmax");
-    }
+    if (radius == 0) return report_no_surface(diagnostics, statement, "the radius is 0");
+    if (z_min_ == z_max_) return report_no_surface(diagnostics, statement, "there is no sphere between zmin and zmax");
     sweep_ = Sweep(static_cast<double>(phimax));
     theta_at_z_min_ = std::acos(z_min_ / r_), theta_at_z_max_ = std::acos(z_max_ / r_);
     whole_ = z_min_ == -r_ && z_max_ == r_ && phimax >= 360;
@@ -260,7 +259,7 @@ const Register<Sphere> sphere{
     "shape",
     "sphere",
     "A sphere around the origin, or a part of one.",
-    param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kPositive),
+    param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kNotNegative),
     param(&Sphere::zmin, "zmin", Unit::Length, "Lower end of the part that is there; -radius by default."),
     param(&Sphere::zmax, "zmax", Unit::Length, "Upper end of the part that is there; radius by default."),
     param(&Sphere::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",

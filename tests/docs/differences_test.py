@@ -368,7 +368,7 @@ class Differences(unittest.TestCase):
           LightSource "point"
           Translate 0 0 5
           Shape "trianglemesh" "integer indices" [0 1 2 0 1 1] "point P" [-1 -1 0  1 -1 0  1 1 0]'''),
-                    said="1 degenerate triangle (no area)")
+                    said="1 degenerate triangle (no area, or repeated)")
 
     def test_other_integrators(self):
         self.render('Integrator "path"\n' + scene('LightSource "point"'), said="the picture is made with whitted")

@@ -234,21 +234,31 @@ INSTANTIATE_TEST_SUITE_P(Shapes, Quadric, testing::ValuesIn(cases()),
 TEST(QuadricParameters, WhatCannotBeIsRefused) {
   const auto refused = [](const char* shape, ParameterList params) { return !Made(shape, std::move(params)).ok(); };
   for (const char* shape : {"sphere", "disk", "cylinder", "cone", "paraboloid"}) {
-    EXPECT_TRUE(refused(shape, {floats("radius", {0})})) << shape;
     EXPECT_TRUE(refused(shape, {floats("radius", {-1})})) << shape;
     EXPECT_TRUE(refused(shape, {floats("radius", {INFINITY})})) << shape;
     EXPECT_TRUE(refused(shape, {floats("radius", {NAN})})) << shape;
     EXPECT_TRUE(refused(shape, {floats("phimax", {0})})) << shape;
   }
-  EXPECT_TRUE(refused("sphere", {floats("zmin", {0.5}), floats("zmax", {0.5})}));
-  EXPECT_TRUE(refused("sphere", {floats("zmin", {2}), floats("zmax", {3})}));
-  EXPECT_TRUE(refused("disk", {floats("innerradius", {1})}));
   EXPECT_TRUE(refused("disk", {floats("innerradius", {-1})}));
-  EXPECT_TRUE(refused("cylinder", {floats("zmin", {1})}));
   EXPECT_TRUE(refused("cone", {floats("height", {0})}));
-  EXPECT_TRUE(refused("paraboloid", {floats("zmax", {0})}));
   EXPECT_TRUE(refused("hyperboloid", {points("p1", {1, 0, 1}), points("p2", {2, 0, 1})}));
-  EXPECT_TRUE(refused("hyperboloid", {points("p1", {0, 0, 1}), points("p2", {0, 0, 2})}));
+}
+
+TEST(QuadricParameters, WhatHasNoSurfaceIsLeftOutWithAWarning) {
+  const auto left_out = [](const char* shape, ParameterList params) {
+    Made made(shape, std::move(params));
+    const auto& said = made.diagnostics.all();
+    return made.ok() && made.analytic().has_no_surface() && said.size() == 1 && said[0].severity == Severity::Warning;
+  };
+  for (const char* shape : {"sphere", "disk", "cylinder", "cone", "paraboloid"}) {
+    EXPECT_TRUE(left_out(shape, {floats("radius", {0})})) << shape;
+  }
+  EXPECT_TRUE(left_out("sphere", {floats("zmin", {0.5}), floats("zmax", {0.5})}));
+  EXPECT_TRUE(left_out("sphere", {floats("zmin", {2}), floats("zmax", {3})}));
+  EXPECT_TRUE(left_out("disk", {floats("innerradius", {1})}));
+  EXPECT_TRUE(left_out("cylinder", {floats("zmin", {1})}));
+  EXPECT_TRUE(left_out("paraboloid", {floats("zmax", {0})}));
+  EXPECT_TRUE(left_out("hyperboloid", {points("p1", {0, 0, 1}), points("p2", {0, 0, 2})}));
 }
 
 TEST(QuadricParameters, ASweepBeyondAFullTurnIsAFullTurn) {

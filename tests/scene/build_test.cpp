@@ -33,11 +33,14 @@ TEST(Build, DegenerateTrianglesOfAllShapesAreSaidOnce) {
   const std::string mesh =
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 1 1] \"point P\" [-1 -1 0  1 -1 0  1 1 0] Translate 0 0 1\n";
   EXPECT_EQ(said_of("Shape \"sphere\""), "");
-  EXPECT_NE(said_of(mesh).find("test.pbrt:3:1: warning: 1 degenerate triangle (no area)\n"), std::string::npos)
+  EXPECT_NE(said_of(mesh).find("test.pbrt:3:1: warning: 1 degenerate triangle (no area, or repeated)\n"),
+            std::string::npos)
       << said_of(mesh);
   const std::string said = said_of("Shape \"sphere\"\n" + mesh + mesh + "ObjectBegin \"o\"\n" + mesh +
                                    "ObjectEnd ObjectInstance \"o\" ObjectInstance \"o\"");
-  EXPECT_EQ(said.find("test.pbrt:4:1: warning: 3 degenerate triangles (no area) in 3 shapes, the first here\n"), 0u)
+  EXPECT_EQ(
+      said.find("test.pbrt:4:1: warning: 3 degenerate triangles (no area, or repeated) in 3 shapes, the first here\n"),
+      0u)
       << said;
   EXPECT_EQ(said.find("warning", 30), std::string::npos) << said;
 }
@@ -47,8 +50,10 @@ TEST(Build, ShapesKeepTheOrderOfTheFile) {
   constexpr size_t kCount = 200;
   std::string text = "WorldBegin\n";
   for (size_t i = 0; i < kCount; ++i) {
-    text += "Translate 0 0 1 Shape \"trianglemesh\" \"point P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [";
-    for (size_t k = 0; k <= i; ++k) text += "0 1 2 0 0 1 ";
+    text += "Translate 0 0 1 Shape \"trianglemesh\" \"point P\" [";
+    for (size_t k = 0; k <= i + 2; ++k) text += fmt::format("{} {} 0 ", k, k * k);  // a parabola: no three on a line
+    text += "] \"integer indices\" [";
+    for (size_t k = 0; k <= i; ++k) text += fmt::format("0 {} {} 0 0 1 ", k + 1, k + 2);
     text += "]\n";
   }
   test::Planned planned(text + "WorldEnd\n");
@@ -62,8 +67,9 @@ TEST(Build, ShapesKeepTheOrderOfTheFile) {
     EXPECT_EQ(scene->shapes[i].mesh, scene->meshes[i].get());
   }
   ASSERT_EQ(said.all().size(), 1u);
-  EXPECT_EQ(said.all()[0].message, fmt::format("{} degenerate triangles (no area) in {} shapes, the first here",
-                                               kCount * (kCount + 1) / 2, kCount));
+  EXPECT_EQ(said.all()[0].message,
+            fmt::format("{} degenerate triangles (no area, or repeated) in {} shapes, the first here",
+                        kCount * (kCount + 1) / 2, kCount));
   EXPECT_EQ(planned.sources.place(said.all()[0].where).line, 2u);
 }
 

@@ -19,14 +19,18 @@ struct Planned {
   ParseResult parsed;
   BoundScene bound;
   EffectPlan plan;
+  Diagnostics warnings;  ///< Of binding, where they are allowed.
 
-  explicit Planned(const std::string& text) : parsed(parse_text(sources, "test.pbrt", text, "")) {
+  enum class Warnings { Failures, Allowed };
+  explicit Planned(const std::string& text, Warnings mode = Warnings::Failures)
+      : parsed(parse_text(sources, "test.pbrt", text, "")) {
     expect_silence(parsed.diagnostics);
     if (parsed.scenes.size() != 1) throw std::runtime_error("not one world");
     Diagnostics said;
     const ValuePosition position = [this](const Parameter& p, size_t i) { return value_position(sources, p, i); };
     bound = bind_scene(parsed.scenes[0], position, said);
-    expect_silence(said);
+    if (mode == Warnings::Failures) expect_silence(said);
+    warnings = said;
     plan = plan_effects(bound);
   }
   Planned(const Planned&) = delete;
