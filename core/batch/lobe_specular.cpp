@@ -85,7 +85,8 @@ inline Delta refract(const Vec3f& wo, const Vec3f& normal, float eta) {
   const bool straight = eta == 1 || r.g2 <= 0;
   const Vec3f wi{straight ? -wo.x : bent.x, straight ? -wo.y : bent.y, straight ? -wo.z : bent.z};
   const float f = (1 - fresnel_dielectric(z, eta)) / (n * n);
-  return {wi, z != 0 && r.g2 > 0 ? f : 0.0f};
+  // An index of 1 is no boundary, also where the square of the cosine is too small for a float.
+  return {wi, eta == 1 || (z != 0 && r.g2 > 0) ? f : 0.0f};
 }
 
 /// Writes direction and weight of lobe k where it was chosen; delta(i) gives them for weight 1.
