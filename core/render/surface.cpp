@@ -255,15 +255,22 @@ void object_hits(const Scene& scene, const SurfaceHits& h, int first, const Mat4
 void place_points(const Mat4d& m, const SurfacePointLanes& in, const ShadingBatch& s, const GeometricPartials& g) {
   const double mirrored = swaps_handedness(m) ? -1 : 1;
   for_lanes(in.n, [&](int i) {
-    const Vec3d error = in.p_error[i];
+    // Of the point, and of four roundings of a double on its way through m.
+    constexpr double kRoundings = 4.5e-16;
+    const Vec3d error =
+        in.p_error[i] + Vec3d(std::abs(in.p.x[i]), std::abs(in.p.y[i]), std::abs(in.p.z[i])) * kRoundings;
     const auto coordinate = [&](int c) { return affine(m, c, in.p.x[i], in.p.y[i], in.p.z[i]); };
     const Vec3d q(coordinate(0), coordinate(1), coordinate(2));
-    const auto error_of = [&](int c, double at) {
+    const Vec3f p = to_float(q);
+    // The rounding to floats as it is, not a bound on it: a ray that leaves must not jump over a neighbour that is a few
+    // units in the last place away. A little more than that, because errors along a curved surface leave it, too.
+    const auto error_of = [&](int c, double exact, float rounded) {
       const double object = std::abs(m[0][c]) * error.x + std::abs(m[1][c]) * error.y + std::abs(m[2][c]) * error.z;
-      return static_cast<float>(object) + gamma_bound(3) * static_cast<float>(std::abs(at));
+      const double rounding = std::abs(exact - static_cast<double>(rounded)) * 1.0001;
+      return static_cast<float>(object + std::abs(m[3][c]) * kRoundings + rounding);
     };
-    s.p.set(i, to_float(q));
-    s.p_error.set(i, {error_of(0, q.x), error_of(1, q.y), error_of(2, q.z)});
+    s.p.set(i, p);
+    s.p_error.set(i, {error_of(0, q.x, p.x), error_of(1, q.y, p.y), error_of(2, q.z, p.z)});
     s.u[i] = static_cast<float>(in.u[i]), s.v[i] = static_cast<float>(in.v[i]);
     const Vec3d dpdu = linear(m, in.dpdu[i]), dpdv = linear(m, in.dpdv[i]);
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
@@ -374,7 +381,10 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
     if (h.instance[i] < 0) continue;
     const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
     const Mat4d m = interpolate_keys(scene.keys_of(instance), h.time ? h.time[i] : 0), nm = normal_matrix(m);
-    const Vec3f local = s.p[i], error = s.p_error[i];
+    const Vec3f local = s.p[i], known = s.p_error[i];
+    // Embree meets the object with rays that it takes there in floats, however well the point itself is known.
+    const auto reached = [](float error, float at) { return max_of(error, gamma_bound(3) * std::abs(at)); };
+    const Vec3f error(reached(known.x, local.x), reached(known.y, local.y), reached(known.z, local.z));
     const Vec3d p = transform_point(m, Vec3d(local));
     const auto error_of = [&](int c) {
       // The float matrix Embree used differs from ours by half a unit in the last place of each entry.
