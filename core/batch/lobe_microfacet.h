@@ -73,8 +73,9 @@ inline float microfacet_transmission(const Distribution& d, const Pair& p, float
   const float oh = dot(p.wo, h), ih = dot(p.wi, h), z = dot(h, p.n);
   const float e = d.e(h, z, p.n);
   const float density = trowbridge_reitz(e > 0 ? e : 1.0f, d.alpha_xy());
-  const float value = (1 - fresnel_dielectric(oh, eta)) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) /
-                      (smith_sum(d, p) * (length2 > 0 ? length2 : 1.0f));
+  const float below = smith_sum(d, p) * length2;  // 0 also where the product is too small for a float
+  const float value =
+      (1 - fresnel_dielectric(oh, eta)) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) / (below > 0 ? below : 1.0f);
   // Both cosines of a facet that refracts have different signs, and so have those of the surface. Facets seen
   // from behind are not excluded, as they are not in pbrt-v3: only very rough glass has any.
   return e > 0 && p.zo * p.zi < 0 && oh * ih <= 0 ? value * p.transmits : 0.0f;

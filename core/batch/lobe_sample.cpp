@@ -17,6 +17,14 @@ struct Local {
   Vec3f to_render(const Vec3f& w) const { return normalize(ss * w.x + ts * w.y + n * w.z); }
 };
 
+/// The half vector of two directions of render space in the local frame. In double, because of nearly smooth facets it
+/// has to be known to a small part of alpha, and at grazing angles it is a small sum of two large vectors.
+Vec3f half_vector(const Local& l, const Vec3f& wo, const Vec3f& wi) {
+  const Vec3d sum = Vec3d(wo) + Vec3d(wi);
+  const Vec3d local(sum.dot(Vec3d(l.ss)), sum.dot(Vec3d(l.ts)), sum.dot(Vec3d(l.n)));
+  return Vec3f(local.normalized());
+}
+
 Local local_frame(const ShadingBatch& s, const LobeFrame& frame, int i) {
   Local l{frame.ss[i], frame.ts[i], s.ns[i], {}};
   l.wo = l.to_local(s.wo[i]);
@@ -55,9 +63,9 @@ Vec3f sample_visible_normal(const Vec3f& wo, float ax, float ay, float u, float 
   return normalize({ax * h.x, ay * h.y, max_of(h.z, 0.0f)}) * side;
 }
 
-float reflection_pdf(const Vec3f& wo, const Vec3f& wi, float ax, float ay) {
+/// `h` is the half vector, see half_vector().
+float reflection_pdf(const Vec3f& wo, const Vec3f& wi, const Vec3f& h, float ax, float ay) {
   if (wo.z * wi.z <= 0) return 0;
-  const Vec3f h = normalize(wo + wi);
   const float c = abs_dot(wo, h);
   return c > 0 ? visible_normal_pdf(wo, h, ax, ay) / (4 * c) : 0.0f;
 }
@@ -72,7 +80,7 @@ float transmission_pdf(const Vec3f& wo, const Vec3f& wi, float ax, float ay, flo
   return visible_normal_pdf(wo, h, ax, ay) * n * n * std::abs(ih) / length2;
 }
 
-float lobe_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
+float lobe_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi, const Vec3f& h) {
   const float cosine = std::abs(wi.z) * kInvPi;
   switch (lobe.type) {
     case LobeType::LambertReflection:
@@ -83,9 +91,9 @@ float lobe_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
     case LobeType::OrenNayar: return wo.z * wi.z > 0 ? cosine : 0.0f;
     case LobeType::LambertTransmission: return wo.z * wi.z < 0 ? cosine : 0.0f;
     case LobeType::DisneyReflection:
-    case LobeType::MicrofacetReflection: return reflection_pdf(wo, wi, lobe.a[i], lobe.b[i]);
+    case LobeType::MicrofacetReflection: return reflection_pdf(wo, wi, h, lobe.a[i], lobe.b[i]);
     case LobeType::FresnelBlend:
-      return wo.z * wi.z > 0 ? 0.5f * (cosine + reflection_pdf(wo, wi, lobe.a[i], lobe.b[i])) : 0.0f;
+      return wo.z * wi.z > 0 ? 0.5f * (cosine + reflection_pdf(wo, wi, h, lobe.a[i], lobe.b[i])) : 0.0f;
     case LobeType::DisneyClearcoat: return clearcoat_pdf(lobe.a[i], wo, wi);
     case LobeType::Hair: return hair_pdf(lobe, i, wo, wi);
     case LobeType::Fourier: return fourier_pdf(*lobe.table, wo, wi);
@@ -97,12 +105,14 @@ float lobe_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
   return 0;
 }
 
-float lane_pdf(const LobeSet& set, int i, const Vec3f& wo, const Vec3f& wi) {
+/// The density of a lane's direction wi, which is in render space.
+float lane_pdf(const LobeSet& set, int i, const Local& l, const Vec3f& render_wo, const Vec3f& render_wi) {
+  const Vec3f wo = l.wo, wi = l.to_local(render_wi), h = half_vector(l, render_wo, render_wi);
   float sum = 0;
   int count = 0;
   for (int k = 0; k < set.count; ++k) {
     if (!is_active(set.lobes[k], i)) continue;
-    sum += lobe_pdf(set.lobes[k], i, wo, wi);
+    sum += lobe_pdf(set.lobes[k], i, wo, wi, h);
     ++count;
   }
   return count > 0 && wo.z != 0 ? sum / static_cast<float>(count) : 0.0f;
@@ -186,7 +196,7 @@ Vec3f sample_lane(const LobeSet& set, int i, const Vec3f& wo, float lobe_u, floa
 void pdf_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi, float* pdf) {
   for (int i = 0; i < s.n; ++i) {
     const Local l = local_frame(s, frame, i);
-    pdf[i] = lane_pdf(set, i, l.wo, l.to_local(wi[i]));
+    pdf[i] = lane_pdf(set, i, l, s.wo[i], wi[i]);
   }
 }
 
@@ -197,7 +207,7 @@ void sample_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& fr
     const Vec3f w = sample_lane(set, i, l.wo, lobe_u[i], u[i], v[i]);
     const bool sampled = dot(w, w) > 0;
     wi.set(i, sampled ? l.to_render(w) : -s.wo[i]);
-    pdf[i] = sampled ? lane_pdf(set, i, l.wo, l.to_local(wi[i])) : 0.0f;
+    pdf[i] = sampled ? lane_pdf(set, i, l, s.wo[i], wi[i]) : 0.0f;
   }
   eval_lobes(set, s, frame, wi, f);
   for_lanes(s.n, [&](int i) {
