@@ -107,7 +107,9 @@ void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, u
     packet.intersect(*user.analytic);
     int left = 0;
     for (int k = 0; k < packet.n; ++k) {
-      if (!(packet.t[k] < t_far[k])) continue;
+      // As floats, which is what Embree keeps: of surfaces that coincide the same one is met everywhere, whatever the
+      // distance rounds to.
+      if (!(static_cast<float>(packet.t[k]) < static_cast<float>(t_far[k]))) continue;
       const int i = packet.lane[k];
       bool cut = false;
       if (user.alpha) {

@@ -1,4 +1,6 @@
 // Case 7: boundaries so close to each other that a ray's start could jump over the next one.
+#include <algorithm>
+
 #include "tests/hard/glass.h"
 #include "tests/hard/hard_case.h"
 
@@ -64,6 +66,37 @@ TEST(Hard, ThinBubbles) {
         const double seen = static_cast<double>(look_along(x, world, 8, size).pixel(0, 0).x);
         shells.see(std::abs(seen / (t * t) - 1), fmt::format("gap {} offset {} size {}", gap, x, size));
       }
+    }
+  }
+}
+
+TEST(Hard, CoincidentBoundaries) {
+  // Glass and liquid that share a boundary exactly. One of the two is met, the ray leaves beyond both, and it must be the
+  // same one all over the picture. Here none reflects and an emitter of radiance 1 is behind, which shows (1 - R) / n^2 of
+  // itself, n the index of the boundary that was met: tilted planes and a ball.
+  HardCase same({7, "glass and liquid with a common boundary: which of them is met", "sphere, disk, mesh, both orders",
+                 "spread of (1 - R) / n^2 over 1024 pixels", 1e-4, ""});
+  for (const char* shape :
+       {"Shape \"sphere\"", "Translate 0 0 1 Shape \"disk\" \"float radius\" 5",
+        "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-5 -5 1 5 -5 1 5 5 1 -5 5 1]"}) {
+    for (const bool glass_first : {true, false}) {
+      const auto boundary_of = [&](double index) {
+        return fmt::format(
+            "AttributeBegin Rotate 10 1 2 3 Material \"perfectglass\" \"float index\" {:.9g} "
+            "\"rgb Kr\" [0 0 0] {} AttributeEnd\n",
+            index, shape);
+      };
+      const std::string glass = boundary_of(1.5), liquid = boundary_of(1.33 / 1.5);
+      const Rendered picture(
+          "Film \"image\" \"integer xresolution\" 32 \"integer yresolution\" 32\n"
+          "Sampler \"halton\" \"integer pixelsamples\" 4\nPixelFilter \"box\"\nLookAt 0 0.3 4  0 0 0  0 1 0\n"
+          "Camera \"perspective\" \"float fov\" 2\nWorldBegin\n" +
+          (glass_first ? glass + liquid : liquid + glass) +
+          "Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
+          "Shape \"sphere\" \"float radius\" 0.8\nWorldEnd\n");
+      const auto [low, high] = std::minmax_element(picture.rgb().begin(), picture.rgb().end());
+      EXPECT_GT(*low, 0.4f) << shape;
+      same.see(static_cast<double>(*high - *low), shape);
     }
   }
 }
