@@ -15,8 +15,8 @@ namespace {
 
 using namespace test;
 
-constexpr float kAlphas[] = {1e-6f, 1e-5f, 1e-4f, 1e-3f, 0.01f, 0.1f, 0.3f, 1.0f};
-constexpr double kCosines[] = {1, 0.5, 0.1, 0.01, -0.5};
+constexpr float kAlphas[] = {1e-6f, 1e-5f, 1e-4f, 1e-3f, 0.01f, 0.1f, 0.3f, 0.6f, 1.0f};
+constexpr double kCosines[] = {1, 0.5, 0.1, 0.01, 1e-3, -0.01, -0.5};
 
 /// A surface of microfacets by name.
 struct Surface {
