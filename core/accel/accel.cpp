@@ -7,6 +7,7 @@
 
 #include "core/accel/embree.h"
 #include "core/accel/replay.h"
+#include "core/accel/second_look.h"
 
 namespace whit {
 namespace {
@@ -304,6 +305,7 @@ struct Accel::Impl {
   std::vector<Group> groups;
   std::vector<int32_t> instance_group;
   std::vector<std::unique_ptr<GeometryUser>> users;
+  bool has_meshes = false, second_look_for_all = false;
   double small_scene = 0;
   double worth = 0;  ///< Of the whole scene, in triangles; see AccelOptions.
   std::atomic<ssize_t> bytes{0};
@@ -311,6 +313,7 @@ struct Accel::Impl {
 
   template <int N>
   void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
+  void intersect_packets(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
   template <int N>
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
 
@@ -349,6 +352,7 @@ constexpr double kWorthOfAnalytic = 200, kWorthOfLarge = 1e9;
 
 Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->robust = options.robust, impl_->small_scene = options.small_scene;
+  impl_->second_look_for_all = options.second_look_for_all;
   impl_->device = rtcNewDevice(options.embree.empty() ? nullptr : options.embree.c_str());
   const auto can = [this](RTCDeviceProperty p) { return rtcGetDeviceProperty(impl_->device, p) != 0; };
   if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
@@ -386,6 +390,7 @@ void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest
   impl_->set_alpha(g, alpha);
   impl_->attach(group, g, shape);
   impl_->worth += static_cast<double>(mesh.triangle_count);
+  impl_->has_meshes = true;
 }
 
 void Accel::add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha) {
@@ -468,13 +473,19 @@ void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coh
   }
 }
 
+void Accel::Impl::intersect_packets(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+  switch (width) {
+    case 16: intersect<16>(rays, hits, coherent); break;
+    case 8: intersect<8>(rays, hits, coherent); break;
+    default: intersect<4>(rays, hits, coherent); break;
+  }
+}
+
 void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
   if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
-  switch (impl_->width) {
-    case 16: impl_->intersect<16>(rays, hits, coherent); break;
-    case 8: impl_->intersect<8>(rays, hits, coherent); break;
-    default: impl_->intersect<4>(rays, hits, coherent); break;
-  }
+  const auto trace = [&](const RayLanes& r, const HitLanes& h) { impl_->intersect_packets(r, h, coherent); };
+  trace(rays, hits);
+  if (coherent && impl_->has_meshes && impl_->robust) SecondLook(impl_->second_look_for_all).look(rays, hits, trace);
   if (impl_->instance_group.empty()) return;
   const int world_first = impl_->groups[kWorld].first_shape;
   for (int i = 0; i < rays.n; ++i) {

@@ -22,6 +22,8 @@ class Sampler : public Plugin {
   virtual int samples_per_pixel() const = 0;
   /// Overrides the count (--spp); the sampler rounds as it must. Returns the count it will use.
   virtual int set_samples_per_pixel(int n) = 0;
+  /// True when samples lie at the same place in every pixel, so that rays can be aimed exactly at vertices of a mesh.
+  virtual bool is_regular() const { return false; }
 
   /// Numbers in [0,1) of one dimension, or of the pair (dimension, dimension + 1).
   virtual void get_1d(const SampleKeys& keys, int dimension, float* u) const = 0;

@@ -28,6 +28,7 @@ class Stratified final : public Sampler {
   }
 
   int samples_per_pixel() const override { return xsamples * ysamples; }
+  bool is_regular() const override { return !jitter; }
 
   /// The grid nearest to square that holds n samples.
   int set_samples_per_pixel(int n) override {
