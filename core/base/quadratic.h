@@ -84,15 +84,17 @@ inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) { re
 struct AxialQuadric {
   double wx = 1, wz = 0, lz = 0, w = 0;
 
-  /// The values t0 <= t1 at which the line o + t d meets it; NaN when it does not.
+  /// The values t0 <= t1 at which the line o + t d meets it; NaN when it does not. The quadric's own origin lies at
+  /// z_shift on the z axis: subtracted here, where the difference keeps all its digits.
   [[gnu::always_inline]] void roots(double ox, double oy, double oz, double dx, double dy, double dz, double& t0,
-                                    double& t1) const {
+                                    double& t1, double z_shift = 0) const {
+    const DoubleDouble z = exact_sum(oz, -z_shift), two_z{2 * z.hi, 2 * z.lo};
     const DoubleDouble dwx{wx, 0}, dwz{wz, 0}, dlz{lz, 0};
     const DoubleDouble a = dwx * (exact_product(dx, dx) + exact_product(dy, dy)) + dwz * exact_product(dz, dz);
-    const DoubleDouble half_b =
-        dwx * (exact_product(ox, dx) + exact_product(oy, dy)) + dwz * exact_product(oz, dz) + dlz * DoubleDouble{dz, 0};
-    const DoubleDouble c = dwx * (exact_product(ox, ox) + exact_product(oy, oy)) + dwz * exact_product(oz, oz) +
-                           dlz * DoubleDouble{2 * oz, 0} + DoubleDouble{w, 0};
+    const DoubleDouble half_b = dwx * (exact_product(ox, dx) + exact_product(oy, dy)) +
+                                dwz * (z * DoubleDouble{dz, 0}) + dlz * DoubleDouble{dz, 0};
+    const DoubleDouble c =
+        dwx * (exact_product(ox, ox) + exact_product(oy, oy)) + dwz * (z * z) + dlz * two_z + DoubleDouble{w, 0};
     double near_root, far_root;
     const bool real = solve_quadratic(a, half_b, c, near_root, far_root);
     constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -127,7 +129,7 @@ void intersect_quadric(const Rays& rays, const AxialQuadric& quadric, const Cove
     const double *dx = rays.dx + first, *dy = rays.dy + first, *dz = rays.dz + first;
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
-      quadric.roots(ox[i], oy[i], oz[i] - z_shift, dx[i], dy[i], dz[i], near_root[i], far_root[i]);
+      quadric.roots(ox[i], oy[i], oz[i], dx[i], dy[i], dz[i], near_root[i], far_root[i], z_shift);
     }
     for (int i = 0; i < n; ++i) {
       const auto hits = [&](double t) {
