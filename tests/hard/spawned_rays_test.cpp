@@ -112,6 +112,19 @@ void check(const Neighbours& n, const Mat4d& m, HardCase& self, HardCase& neighb
     self.see(h.shape[i] == 0, n.name + at);
     neighbour.see(h.shape[i] != 1, n.name + at);
   }
+  // To the same side in any direction, down to a cosine of 1e-3: nothing of a shape that is not hollow there is in sight.
+  if (std::string(n.name) == "hyperboloid") return;
+  Numbers u(5);
+  for (int i = 0; i < Spawned::kRays; ++i) {
+    const Vec3d ng(s.ng[i]), side = ng * (ng.dot(-Vec3d(s.wo[i])) < 0 ? -1 : 1), any = u.direction();
+    const Vec3f w(((any - ng * ng.dot(any)).normalized() + side * std::pow(10, u.between(-3, 1))).normalized());
+    h.d.set(i, w);
+    h.o.set(i, offset_origin(s.p[i], s.p_error[i], s.ng[i], w));
+  }
+  rays.intersect();
+  for (int i = 0; i < Spawned::kRays; ++i) {
+    if (met[static_cast<size_t>(i)]) self.see(h.shape[i] == 0, n.name + at + ", any direction");
+  }
 }
 
 TEST(Hard, SpawnedRays) {
