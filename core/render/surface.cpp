@@ -346,6 +346,11 @@ Vec3d across_curve(CurveData::Kind kind, const CurvePoint& c, const Vec3d& d, do
   return kind == CurveData::Kind::Cylinder ? rotate_about(side, c.tangent.normalized(), -(v - 0.5) * M_PI) : side;
 }
 
+/// The error that makes rays leave at `distance` along the unit normal n, to either side, whichever way n points.
+Vec3f error_along(const Vec3d& n, double distance) {
+  return to_float(Vec3d(std::abs(n.x), std::abs(n.y), std::abs(n.z)) * distance);
+}
+
 void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
                     const GeometricPartials& g) {
   for (int i = 0; i < s.n; ++i) {
@@ -361,16 +366,14 @@ void curve_surfaces(const Scene& scene, const SurfaceHits& h, int first, const S
     const Vec3d own_dpdv = across_curve(curves.kind, c, transform_vector(curves.from_group, d).normalized(), h.v[lane]);
     const Vec3d dpdu = transform_vector(m, own_dpdu), dpdv = transform_vector(m, own_dpdv);
     s.p.set(i, to_float(o + static_cast<double>(h.t[lane]) * d));
-    // A curve stands for a tube: rays leave from outside of it (pbrt's bound, twice the width).
-    const double reach = 2 * own_dpdv.length();
-    const auto error_of = [&](int k) {
-      return static_cast<float>(reach * (std::abs(m[0][k]) + std::abs(m[1][k]) + std::abs(m[2][k])));
-    };
-    s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
     s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
     const Vec3d n = oriented_normal(dpdu, dpdv, m, s.flips[i] != 0);
     s.ng.set(i, to_float(n)), s.ns.set(i, to_float(n));
+    // A curve stands for a tube: rays leave from outside of it. pbrt's bound is a box in the curve's own space, twice
+    // the width to each side; it is turned with the curve.
+    const Vec3d box = transform_vector(m.transposed(), n);
+    s.p_error.set(i, error_along(n, 2 * own_dpdv.length() * (std::abs(box.x) + std::abs(box.y) + std::abs(box.z))));
     if (s.dndu) s.dndu.set(i, {0, 0, 0}), s.dndv.set(i, {0, 0, 0});
   }
 }
@@ -394,12 +397,19 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
       return static_cast<float>(spread) + gamma_bound(4) * static_cast<float>(rounding);
     };
     s.p.set(i, to_float(p));
-    s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
+    const Vec3d local_ng(s.ng[i]), ng = transform_vector(nm, local_ng).normalized();
+    if (scene.shapes[static_cast<size_t>(h.shape[i])].curves) {
+      // A width, not a rounding error, and along the normal: see curve_surfaces().
+      const double outside =
+          std::abs(local_ng.x) * error.x + std::abs(local_ng.y) * error.y + std::abs(local_ng.z) * error.z;
+      s.p_error.set(i, error_along(ng, outside * std::abs(transform_vector(m, local_ng).dot(ng))));
+    } else {
+      s.p_error.set(i, {error_of(0), error_of(1), error_of(2)});
+    }
     for (const Vec3Lanes* v : {&s.dpdu, &s.dpdv, &g.dpdu, &g.dpdv})
       v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
     // The normal keeps the side it has on the object (pbrt does not flip for the instance's own handedness).
     const Vec3d local_ns(s.ns[i]), ns = transform_vector(nm, local_ns).normalized();
-    const Vec3d ng = transform_vector(nm, Vec3d(s.ng[i])).normalized();
     s.ng.set(i, to_float(ng));
     s.ns.set(i, to_float(ns.dot(ng) < 0 ? -ns : ns));
     if (s.dndu) {
