@@ -1,6 +1,7 @@
 // A sphere around the origin, or the part of one between two heights and within a sweep around z, with the
 // parameterisation of pbrt-v3. As a light it is sampled by the cone it subtends (Shirley and Wang 1992), in
-// forms of 1 - cos that keep their digits at any distance; parts of spheres and ellipsoids are sampled by area.
+// forms of 1 - cos that keep their digits at any distance, and from inside by direction; parts of spheres and
+// ellipsoids are sampled by area.
 
 #include <cmath>
 #include <optional>
@@ -65,7 +66,8 @@ struct Sphere final : AnalyticShape {
 
   ShapeSample sample_from(const Vec3d& ref, double u0, double u1) const override {
     const Cone cone(*this, ref);
-    if (!whole_ || cone.stretch > kNearlyRound || !cone.is_outside()) return AnalyticShape::sample_from(ref, u0, u1);
+    if (!whole_ || cone.stretch > kNearlyRound) return AnalyticShape::sample_from(ref, u0, u1);
+    if (!cone.is_outside()) return sample_inside(ref, u0, u1);
     return cone.stretch < kRound ? cone.sample_sphere(flips_, u0, u1) : sample_nearly_round(cone, ref, u0, u1);
   }
 
@@ -77,7 +79,7 @@ struct Sphere final : AnalyticShape {
     sample_cones(placed.center, placed.radius, s);
     for (int i = 0; i < s.n; ++i) {
       if (s.pdf[i] > 0) continue;
-      // Inside, or so near the surface that the cone has lost its digits: by area.
+      // Inside, or on the surface as far as one can tell.
       const auto one = [i](const Vec3Lanes& v) { return v.from(i); };
       AnalyticShape::sample_lanes(
           {1, one(s.ref), s.u + i, s.v + i, one(s.wi), s.distance + i, s.cosine + i, s.pdf + i});
@@ -203,12 +205,30 @@ struct Sphere final : AnalyticShape {
     double t0, t1;
     AxialQuadric{1, 1, 0, -r_ * r_}.roots(o.x, o.y, o.z, d.x, d.y, d.z, t0, t1);
     if (!(t0 > 0)) return {cone.center, -cone.w, 0};
-    const Vec3d p = o + t0 * d;
+    return on_sphere(o + t0 * d, cone.pdf());
+  }
+
+  /// From inside: every direction meets the sphere, so all are equally likely. By area, a point just below the surface
+  /// would get half of its light from the few samples next to it.
+  ShapeSample sample_inside(const Vec3d& ref, double u0, double u1) const {
+    const double z = 1 - 2 * u0, across = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * kPiD * u1;
+    const Vec3d o = transform_point(scene_to_object_, ref);
+    const Vec3d d = transform_vector(scene_to_object_, {across * std::cos(phi), across * std::sin(phi), z});
+    double t0, t1;
+    AxialQuadric{1, 1, 0, -r_ * r_}.roots(o.x, o.y, o.z, d.x, d.y, d.z, t0, t1);
+    // Not quite a sphere: there may be room for the point between it and the sphere around it.
+    const double t = t0 > 0 ? t0 : t1;
+    if (!(t > 0)) return {ref, {0, 0, 1}, 0};
+    return on_sphere(o + t * d, 1 / (4 * kPiD));
+  }
+
+  /// A sample at a point of the sphere, or next to it, in object space.
+  ShapeSample on_sphere(const Vec3d& p, double pdf) const {
     // Normals go by the inverse transpose.
     Vec3d n;
     scene_to_object_.transposed().multDirMatrix(p, n);
     n.normalize();
-    return {transform_point(object_to_scene_, p * (r_ / p.length())), flips_ ? -n : n, cone.pdf()};
+    return {transform_point(object_to_scene_, p * (r_ / p.length())), flips_ ? -n : n, pdf};
   }
 
   /// Whether a hit in (t_min, t_max) of any ray is possible: the roots in plain double, with a generous bound on their

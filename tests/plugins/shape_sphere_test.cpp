@@ -143,7 +143,7 @@ TEST(Sphere, ConeSamplesLieOnTheNearSideOfTheSphere) {
 TEST(Sphere, MeanOfInversePdfIsTheSolidAngle) {
   Made made("sphere", {});
   made.analytic().place(Mat4d(), false);
-  // Outside every sample has the pdf of the cone; from inside area samples see 4 pi.
+  // Outside every sample has the pdf of the cone; from inside samples of all directions see 4 pi.
   Numbers u(10);
   double sum = 0;
   const int n = 400000;
