@@ -410,8 +410,10 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
       v->set(i, to_float(transform_vector(m, Vec3d((*v)[i]))));
     // The normal keeps the side it has on the object (pbrt does not flip for the instance's own handedness).
     const Vec3d local_ns(s.ns[i]), ns = transform_vector(nm, local_ns).normalized();
-    s.ng.set(i, to_float(ng));
-    s.ns.set(i, to_float(ns.dot(ng) < 0 ? -ns : ns));
+    // Which side the shading normal is on is for this space to say: where an object is flat as a needle, the sign of a
+    // product of normals is not the same in both.
+    s.ns.set(i, to_float(ns));
+    s.ng.set(i, to_float(ns.dot(ng) < 0 ? -ng : ng));
     if (s.dndu) {
       for (const Vec3Lanes* v : {&s.dndu, &s.dndv})
         v->set(i, to_float(transform_normal_change(nm, local_ns, Vec3d((*v)[i]))));
