@@ -19,6 +19,8 @@ const char* const kKnown = ".exr .pfm .png .tga .jpg .jpeg .tif .tiff";
 
 // The largest value that still rounds to a finite half.
 constexpr float kHalfMax = 65504.0f;
+// The smallest that a half stores with all of its digits.
+constexpr float kHalfMin = 0x1p-14f;
 
 std::string extension(const std::string& path) {
   std::string e = std::filesystem::path(path).extension().string();
@@ -78,6 +80,13 @@ bool exceeds_half(const OutputImage& image) {
                                           [&](const OutputLayer& l) { return !l.full_float && beyond(l.values); });
 }
 
+// True if all of the picture is below what a half stores with all its digits; much of it might be stored as 0.
+bool below_half(const OutputImage& image) {
+  float most = 0;
+  for (const float v : image.rgb) most = std::max(most, std::abs(v));
+  return most > 0 && most < kHalfMin;
+}
+
 // Beyond half's range the whole file becomes float, which `warning` says.
 void write_linear(AtomicFile& file, const std::string& path, const OutputImage& image, bool full_float,
                   std::string& warning) {
@@ -85,6 +94,10 @@ void write_linear(AtomicFile& file, const std::string& path, const OutputImage& 
     full_float = true;
     warning = fmt::format("\"{}\" holds values above {:.0f}, the most a half can store: written as 32-bit float", path,
                           kHalfMax);
+  } else if (!full_float && below_half(image)) {
+    full_float = true;
+    warning = fmt::format(
+        "\"{}\" holds no value above {:.1e}, below which a half loses digits: written as 32-bit float", path, kHalfMin);
   }
   write_exr(file, image, full_float);
 }

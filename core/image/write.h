@@ -54,8 +54,8 @@ bool is_linear_format(const std::string& path);
 
 /// Writes the picture to `path`, whose extension (any case) chooses the format.
 ///
-/// .exr: ZIP-compressed scanlines, half unless `full_float`; a value beyond half's range (65504) makes the
-/// whole file float, and `warning` says so. A crop is a data window inside the display window. .pfm and the
+/// .exr: ZIP-compressed scanlines, half unless `full_float`; a value beyond half's range (65504), or none above its lower
+/// end (6e-5), makes the whole file float, and `warning` says so. A crop is a data window inside the display window. .pfm and the
 /// display formats hold the data window only, as in pbrt-v3; the latter clamp to [0, 1] and round half up, NaN is 0.
 ///
 /// The file is written under a temporary name in the same folder and renamed when complete, so the old file

@@ -48,13 +48,13 @@ void TileSums::add(float film_x, float film_y, const RGB& radiance) {
   const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
   if (px0 > px1) return;
   for (int x = px0; x <= px1; ++x) columns_[static_cast<size_t>(x - px0)] = filter_->column(static_cast<float>(x) - dx);
-  const float value[4] = {radiance.x, radiance.y, radiance.z, 1};
+  const double value[4] = {radiance.x, radiance.y, radiance.z, 1};
   for (int y = py0; y <= py1; ++y) {
     const float* weights = filter_->row(static_cast<float>(y) - dy);
-    float* sums =
+    double* sums =
         &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
     for (int x = px0; x <= px1; ++x, sums += 4) {
-      const float w = weights[columns_[static_cast<size_t>(x - px0)]];
+      const double w = weights[columns_[static_cast<size_t>(x - px0)]];
       for (int c = 0; c < 4; ++c) sums[c] += w * value[c];
     }
   }
@@ -85,15 +85,15 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
     cell[i] = inside ? y * width_ + x : -1;
   });
   cell[n] = -2;
-  const float w = filter_->weight(0, 0);
+  const double w = filter_->weight(0, 0);
   for (int i = 0; i < n;) {
     const int at = cell[i];
     if (at < 0) {
       ++i;
       continue;
     }
-    float* const sums = &sums_[4 * static_cast<size_t>(at)];
-    float r = sums[0], g = sums[1], b = sums[2], weight = sums[3];
+    double* const sums = &sums_[4 * static_cast<size_t>(at)];
+    double r = sums[0], g = sums[1], b = sums[2], weight = sums[3];
     for (; cell[i] == at; ++i) {
       r += w * radiance.r[i], g += w * radiance.g[i], b += w * radiance.b[i];
       weight += w;
@@ -122,17 +122,18 @@ void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tile
     for (int column = 0; column < picture.width(); ++column) {
       const int x = picture.window.min.x + column;
       const auto [tx0, tx1] = tiles_around(x, filter.x_reach());
-      float sum[4] = {0, 0, 0, 0};
+      double sum[4] = {0, 0, 0, 0};
       // Row by row, left to right: the order of additions depends on the pixel alone.
       for (int ty = std::max(ty0, first_tile.y); ty <= std::min(ty1, first_tile.y + tiles_y - 1); ++ty) {
         for (int tx = std::max(tx0, first_tile.x); tx <= std::min(tx1, first_tile.x + tiles_x - 1); ++tx) {
-          const float* s = tiles[static_cast<size_t>((ty - first_tile.y) * tiles_x + tx - first_tile.x)].at(x, y);
+          const double* s = tiles[static_cast<size_t>((ty - first_tile.y) * tiles_x + tx - first_tile.x)].at(x, y);
           for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
         }
       }
       float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) +
                                      static_cast<size_t>(column))];
-      for (int c = 0; c < 3; ++c) out[c] = sum[3] != 0 ? std::max(0.0f, sum[c] / sum[3]) * scale : 0.0f;
+      for (int c = 0; c < 3; ++c)
+        out[c] = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
     }
   });
 }

@@ -53,7 +53,7 @@ class TileSums {
   void add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable);
 
   /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
-  const float* at(int x, int y) const {
+  const double* at(int x, int y) const {
     if (x < x0_ || y < y0_ || x >= x0_ + width_ || y >= y0_ + height_) return nullptr;
     return &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(x - x0_))];
   }
@@ -65,7 +65,7 @@ class TileSums {
 
   const FilterTable* filter_;
   int x0_, y0_, width_, height_;
-  std::vector<float> sums_;
+  std::vector<double> sums_;  ///< Double: a million floats of one size are added with an error of 1 %.
   std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
 };
 

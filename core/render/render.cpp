@@ -144,8 +144,8 @@ class FilmRender {
     std::vector<float> rgb;
     for (int y = window.min.y; y < window.max.y; ++y) {
       for (int x = window.min.x; x < window.max.x; ++x) {
-        const float* s = tile.at(x, y);
-        for (int c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? s[c] / s[3] : 0.0f);
+        const double* s = tile.at(x, y);
+        for (int c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? static_cast<float>(s[c] / s[3]) : 0.0f);
       }
     }
     options_.tile_done(window, rgb);

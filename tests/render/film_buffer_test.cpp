@@ -27,8 +27,8 @@ std::vector<Reached> reached(const FilterTable& filter, float film_x, float film
   std::vector<Reached> out;
   for (int y = -8; y < TileSums::kTile + 8; ++y) {
     for (int x = -8; x < TileSums::kTile + 8; ++x) {
-      const float* s = sums.at(x, y);
-      if (s && s[3] != 0) out.push_back({x, y, s[3]});
+      const double* s = sums.at(x, y);
+      if (s && s[3] != 0) out.push_back({x, y, static_cast<float>(s[3])});
     }
   }
   return out;
