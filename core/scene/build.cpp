@@ -411,13 +411,13 @@ class Builder {
     // One key each, as nearly all have, so that growing does not double what is the largest part of many a scene.
     scene_->instance_keys.reserve(description().instances.size());
     scene_->instances.reserve(description().instances.size());
-    for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])));
+    for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])), description().world_begin);
     for (const auto& instance : description().instances) {
       const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
       const Group& object = groups_[static_cast<size_t>(instance.object + 1)];
-      place(object, keys);
+      place(object, keys, instance.where);
       for (size_t g : moving_[instance.object])
-        place(groups_[g], combined(moving_transform(groups_[g]), transform(instance.transform)));
+        place(groups_[g], combined(moving_transform(groups_[g]), transform(instance.transform)), instance.where);
     }
   }
 
@@ -432,8 +432,22 @@ class Builder {
     return keys;
   }
 
-  void place(const Group& group, const std::vector<Mat4d>& to_world) {
+  /// Whether Embree takes rays to an object's space: it ends the program for those that get beyond 1.8e18 there.
+  bool is_placeable(const Group& group, const Mat4d& to_world) const {
+    constexpr double kLargest = 1e15;
+    const Mat4d back = (group.space.to_world() * to_world * scene_->space.from_world()).inverse();
+    double largest = 0;
+    for (int i = 0; i < 9; ++i) largest = std::max(largest, std::abs(back[i / 3][i % 3]));
+    return largest < kLargest;
+  }
+
+  void place(const Group& group, const std::vector<Mat4d>& to_world, SourcePos where) {
     if (group.shapes.empty() || group.accel_group == Accel::kWorld) return;
+    if (!std::all_of(to_world.begin(), to_world.end(), [&](const Mat4d& m) { return is_placeable(group, m); })) {
+      diagnostics_.error(where, "an object is 1e15 times smaller or flatter here than in its own space",
+                         "apply the scale to the object's shapes instead, inside ObjectBegin");
+      return;
+    }
     std::vector<Mat4d>& keys = scene_->instance_keys;
     scene_->instances.push_back({static_cast<uint32_t>(keys.size()), static_cast<uint32_t>(to_world.size())});
     std::vector<Affine> affine;

@@ -133,15 +133,17 @@ struct Ball {
   static constexpr int kRows = 8, kColumns = 16;
 };
 
+std::string picture_text(const std::string& material, const std::string& shape) {
+  return "Film \"image\" \"integer xresolution\" 48 \"integer yresolution\" 48\n"
+         "Sampler \"halton\" \"integer pixelsamples\" 4\nLookAt 0.3 -5 1.5  0 0 0  0 0 1\n"
+         "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
+         "AttributeBegin Translate -3 -4 5 LightSource \"point\" \"rgb I\" [50 50 50] AttributeEnd\n"
+         "LightSource \"infinite\" \"rgb L\" [.2 .25 .3]\nMaterial \"" +
+         material + "\"\n" + shape + "WorldEnd\n";
+}
+
 std::vector<float> picture_of(const std::string& material, const std::string& shape) {
-  return Rendered(
-             "Film \"image\" \"integer xresolution\" 48 \"integer yresolution\" 48\n"
-             "Sampler \"halton\" \"integer pixelsamples\" 4\nLookAt 0.3 -5 1.5  0 0 0  0 0 1\n"
-             "Camera \"perspective\" \"float fov\" 40\nWorldBegin\n"
-             "AttributeBegin Translate -3 -4 5 LightSource \"point\" \"rgb I\" [50 50 50] AttributeEnd\n"
-             "LightSource \"infinite\" \"rgb L\" [.2 .25 .3]\nMaterial \"" +
-             material + "\"\n" + shape + "WorldEnd\n")
-      .rgb();
+  return Rendered(picture_text(material, shape)).rgb();
 }
 
 TEST(Hard, InstancesAndBakedMeshes) {
@@ -170,6 +172,22 @@ TEST(Hard, InstancesAndBakedMeshes) {
         const std::string object = "ObjectBegin \"o\"\n" + ball.shape() + "ObjectEnd\n" + m + "ObjectInstance \"o\"\n";
         worst.see(relative_mse(picture_of(material, object), numbers), at + " instance");
       }
+    }
+  }
+}
+
+TEST(Hard, InstancesFlatterThanFloats) {
+  // Up to 1e10 they are drawn, above. From 1e16 on they are refused; between, either may be, but the program lives.
+  HardCase worst({13, "instances that flatten their object", "by 1e16 to 1e30, in one axis and in all",
+                  "how many are not refused", 0, ""});
+  for (const double by : {1e16, 1e18, 1e20, 1e25, 1e30}) {
+    for (const char* axes : {"{0:g} 1 1", "{0:g} {0:g} {0:g}"}) {
+      Planned planned(picture_text("matte", "Shape \"sphere\" ObjectBegin \"o\" Shape \"sphere\" ObjectEnd Scale " +
+                                                fmt::format(fmt::runtime(axes), 1 / by) + " ObjectInstance \"o\"\n"));
+      TextureStore textures;
+      Diagnostics said;
+      const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
+      worst.see(scene == nullptr && said.has_errors() ? 0 : 1, fmt::format("{} {}", axes, by));
     }
   }
 }
