@@ -432,13 +432,17 @@ class Builder {
     return keys;
   }
 
-  /// Whether Embree takes rays to an object's space: it ends the program for those that get beyond 1.8e18 there.
+  /// Whether Embree takes rays to an object's space: it inverts the matrix in float, and ends the program for rays that
+  /// get beyond 1.8e18 there.
   bool is_placeable(const Group& group, const Mat4d& to_world) const {
-    constexpr double kLargest = 1e15;
-    const Mat4d back = (group.space.to_world() * to_world * scene_->space.from_world()).inverse();
+    constexpr double kLargest = 1e15, kLargestVolume = 1e36;
+    const Mat4d there = group.space.to_world() * to_world * scene_->space.from_world(), back = there.inverse();
     double largest = 0;
-    for (int i = 0; i < 9; ++i) largest = std::max(largest, std::abs(back[i / 3][i % 3]));
-    return largest < kLargest;
+    for (int i = 0; i < 9; ++i) {
+      largest = std::max({largest, std::abs(there[i / 3][i % 3]), std::abs(back[i / 3][i % 3])});
+    }
+    const double volume = std::abs(there.determinant());
+    return largest < kLargest && volume < kLargestVolume && volume > 1 / kLargestVolume;
   }
 
   void place(const Group& group, const std::vector<Mat4d>& to_world, SourcePos where) {
