@@ -305,7 +305,7 @@ struct Accel::Impl {
   std::vector<Group> groups;
   std::vector<int32_t> instance_group;
   std::vector<std::unique_ptr<GeometryUser>> users;
-  bool has_meshes = false, second_look_for_all = false;
+  bool has_meshes = false, second_look = false;
   double small_scene = 0;
   double worth = 0;  ///< Of the whole scene, in triangles; see AccelOptions.
   std::atomic<ssize_t> bytes{0};
@@ -352,7 +352,7 @@ constexpr double kWorthOfAnalytic = 200, kWorthOfLarge = 1e9;
 
 Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->robust = options.robust, impl_->small_scene = options.small_scene;
-  impl_->second_look_for_all = options.second_look_for_all;
+  impl_->second_look = options.second_look;
   impl_->device = rtcNewDevice(options.embree.empty() ? nullptr : options.embree.c_str());
   const auto can = [this](RTCDeviceProperty p) { return rtcGetDeviceProperty(impl_->device, p) != 0; };
   if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
@@ -485,7 +485,7 @@ void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent)
   if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
   const auto trace = [&](const RayLanes& r, const HitLanes& h) { impl_->intersect_packets(r, h, coherent); };
   trace(rays, hits);
-  if (coherent && impl_->has_meshes && impl_->robust) SecondLook(impl_->second_look_for_all).look(rays, hits, trace);
+  if (impl_->second_look && coherent && impl_->has_meshes && impl_->robust) SecondLook().look(rays, hits, trace);
   if (impl_->instance_group.empty()) return;
   const int world_first = impl_->groups[kWorld].first_shape;
   for (int i = 0; i < rays.n; ++i) {

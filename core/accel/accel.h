@@ -61,8 +61,8 @@ struct AccelOptions {
   /// Scenes worth at most so many triangles (an analytic shape is worth 200) are traced as if all rays were coherent:
   /// neighbours then meet the same few boxes wherever they go. Measured in docs/speed.md.
   double small_scene = 1000;
-  bool second_look_for_all =
-      false;             ///< For all camera rays, not only those that hit nothing: core/accel/second_look.h.
+  /// Camera rays may be aimed exactly at vertices, and are looked at again: core/accel/second_look.h.
+  bool second_look = false;
   std::string embree{};  ///< Configuration of Embree's device, e.g. "isa=avx2"; tests use it.
 };
 

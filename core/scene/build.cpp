@@ -78,7 +78,7 @@ class Builder {
   std::unique_ptr<Scene> run() {
     if (!options_complete()) return nullptr;
     scene_->accel = std::make_unique<Accel>(
-        AccelOptions{.robust = options_.robust_traversal, .second_look_for_all = scene_->sampler().is_regular()});
+        AccelOptions{.robust = options_.robust_traversal, .second_look = scene_->sampler().is_regular()});
     prepare_sampling();
     const auto start = Clock::now();
     load_groups();

@@ -14,8 +14,9 @@ namespace whit::test {
 struct Rendered {
   RenderResult result;
 
-  explicit Rendered(const std::string& text, const BuildOptions& build = {}, const RenderOptions& options = {}) {
-    const BuiltScene built(text, build);
+  explicit Rendered(const std::string& text, const BuildOptions& build = {}, const RenderOptions& options = {},
+                    Planned::Warnings mode = Planned::Warnings::Failures) {
+    const BuiltScene built(text, build, mode);
     result = render(*built.scene, options);
     EXPECT_EQ(result.statistics.invalid_samples, 0)
         << "first at " << result.statistics.first_invalid_pixel.x << ' ' << result.statistics.first_invalid_pixel.y;
