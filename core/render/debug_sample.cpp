@@ -9,6 +9,17 @@
 
 namespace whit {
 
+namespace {
+
+/// Traces one sample; it stays in worker.chunk as long as the arena's scope lasts.
+void trace_sample(Worker& worker, Vec2i pixel, uint32_t index) {
+  const int32_t x = pixel.x, y = pixel.y;
+  generate_camera_rays(worker, 1, &x, &y, &index);
+  trace_chunk(worker);
+}
+
+}  // namespace
+
 uint32_t odd_sample(const Scene& scene, Vec2i pixel) {
   const FlushDenormals flush;
   Worker worker(scene, false);
@@ -16,9 +27,7 @@ uint32_t odd_sample(const Scene& scene, Vec2i pixel) {
   float most = -1;
   for (uint32_t index = 0; index < static_cast<uint32_t>(scene.samples_per_pixel); ++index) {
     const ArenaScope scope(worker.arena);
-    const int32_t x = pixel.x, y = pixel.y;
-    generate_camera_rays(worker, 1, &x, &y, &index);
-    trace_chunk(worker);
+    trace_sample(worker, pixel, index);
     const RGB sum = worker.chunk.radiance[0];
     if (!is_usable_sample(sum)) return index;
     if (luminance(sum) > most) most = luminance(sum), brightest = index;
@@ -31,18 +40,16 @@ std::string debug_sample(const Scene& scene, Vec2i pixel, uint32_t index, const 
   Worker worker(scene, false);
   RoundLog log(scene, place);
   worker.log = &log;
-  const int32_t x = pixel.x, y = pixel.y;
   const ArenaScope scope(worker.arena);
-  generate_camera_rays(worker, 1, &x, &y, &index);
+  trace_sample(worker, pixel, index);
   const SampleChunk& c = worker.chunk;
-  log.line(fmt::format("sample {} of pixel {},{}: film position ({:.9g}, {:.9g}), camera weight {:.6g}{}", index, x, y,
-                       c.film_x[0], c.film_y[0], c.ray_weight[0],
-                       c.time ? fmt::format(", time {:.6g} of the transforms' interval", c.time[0]) : ""));
-  trace_chunk(worker);
+  const std::string time = c.time ? fmt::format(", time {:.6g} of the transforms' interval", c.time[0]) : "";
   const RGB sum = c.radiance[0];
-  log.line(fmt::format("radiance [{:.9g} {:.9g} {:.9g}], luminance {:.9g}{}", sum.x, sum.y, sum.z, luminance(sum),
-                       is_usable_sample(sum) ? "" : ": not a valid sample, left out of the picture"));
-  return log.text();
+  return fmt::format("sample {} of pixel {},{}: film position ({:.9g}, {:.9g}), camera weight {:.6g}{}\n", index,
+                     pixel.x, pixel.y, c.film_x[0], c.film_y[0], c.ray_weight[0], time) +
+         log.text() +
+         fmt::format("radiance [{:.9g} {:.9g} {:.9g}], luminance {:.9g}{}\n", sum.x, sum.y, sum.z, luminance(sum),
+                     is_usable_sample(sum) ? "" : ": not a valid sample, left out of the picture");
 }
 
 }  // namespace whit

@@ -18,7 +18,6 @@ class RoundLog {
   RoundLog(const Scene& scene, Place place) : scene_(scene), place_(std::move(place)) {}
 
   const std::string& text() const { return text_; }
-  void line(std::string text) { text_ += std::move(text) + '\n'; }
 
   void rays(const Round& r);
   void surfaces(const Round& r);
@@ -29,6 +28,7 @@ class RoundLog {
   void spawned(const Round& r, int point, bool reflected, const Vec3f& wi, const RGB& weight);
 
  private:
+  void line(std::string text) { text_ += std::move(text) + '\n'; }
   Vec3d to_world(const Vec3f& p) const;
   std::string hit(const Round& r, int ray) const;
   void lobes(const Round& r, int point);

@@ -118,6 +118,10 @@ class TextureMemory(unittest.TestCase):
         line = (HEADER + self.quads).count("\n") + 2  # a quad's text begins with the end of a line
         self.assertRegex(done.stderr, r'before.pbrt:%d:\d+: error: cannot read image ".*cut.png"' % line)
         self.assertFalse(os.path.exists(self.path("y.exr")))
+        # An account of a sample that met it would be one of a picture that is not the scene's.
+        done = subprocess.run([WHIT, before, "--debug-pixel", "304,176"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stdout), (4, ""))
+        self.assertRegex(done.stderr, r'before.pbrt:%d:\d+: error: cannot read image ".*cut.png"' % line)
 
 
 if __name__ == "__main__":

@@ -214,12 +214,12 @@ class RenderJob {
     times_.build = since(start);
     if (int code = report(building); code != kDone) return code;
     if (!scene) return kSceneError;
-    if (!settings_.debug_pixel.empty()) return explain_pixel(*scene);
+    if (!settings_.debug_pixel.empty()) return explain_pixel(*scene, textures);
     return trace_and_write(*scene, output, textures);
   }
 
   /// What happens to the sample asked for; to the first that is no number, or else the brightest, when none is.
-  int explain_pixel(const Scene& scene) const {
+  int explain_pixel(const Scene& scene, const TextureStore& textures) {
     const std::vector<int> asked = numbers_of(settings_.debug_pixel);
     const Vec2i pixel(asked[0], asked[1]), size = scene.camera().film.resolution;
     const int last = scene.samples_per_pixel - 1;
@@ -234,7 +234,9 @@ class RenderJob {
       return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
     };
     const uint32_t sample = asked.size() == 3 ? static_cast<uint32_t>(asked[2]) : odd_sample(scene, pixel);
-    fmt::print("{}", debug_sample(scene, pixel, sample, place));
+    const std::string account = debug_sample(scene, pixel, sample, place);
+    if (const int code = report(textures.errors()); code != kDone) return code;
+    fmt::print("{}", account);
     return kDone;
   }
 
