@@ -8,6 +8,7 @@
 #include "core/accel/embree.h"
 #include "core/accel/replay.h"
 #include "core/accel/second_look.h"
+#include "core/base/box.h"
 
 namespace whit {
 namespace {
@@ -31,15 +32,8 @@ void set_bounds(const Box3d& box, RTCBounds& out) {
 }
 
 RTCBounds bounds_of(const AnalyticShape& shape) {
-  const Box3d object = shape.object_bounds();
-  Box3d box;
-  for (int c = 0; c < 8; ++c) {
-    box.extendBy(transform_point(shape.object_to_scene(),
-                                 {c & 1 ? object.max.x : object.min.x, c & 2 ? object.max.y : object.min.y,
-                                  c & 4 ? object.max.z : object.min.z}));
-  }
   RTCBounds out;
-  set_bounds(box, out);
+  set_bounds(transform_box(shape.object_to_scene(), shape.object_bounds()), out);
   return out;
 }
 

@@ -7,7 +7,9 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <span>
 
+#include "core/base/box.h"
 #include "core/scene/alpha.h"
 #include "core/scene/bake.h"
 #include "core/scene/coincidence.h"
@@ -201,11 +203,7 @@ class Builder {
       points.positions = loaded.curves.control_points;
       loaded.bounds = mesh_bounds(points, to_world);
     } else if (auto* analytic = dynamic_cast<AnalyticShape*>(&shape); !analytic->has_no_surface()) {
-      const Box3d box = analytic->object_bounds();
-      for (int c = 0; c < 8; ++c) {
-        loaded.bounds.extendBy(transform_point(
-            to_world, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
-      }
+      loaded.bounds = transform_box(to_world, analytic->object_bounds());
     }
   }
 
@@ -216,22 +214,19 @@ class Builder {
     double radius = 0;
     const auto include = [&](const Box3d& box) {
       if (box.isEmpty()) return;
-      for (int c = 0; c < 8; ++c) {
-        const Vec3d corner(c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z);
-        radius = std::max(radius, (corner - scene_->space.origin).length());
-      }
+      for (const Vec3d& corner : corners_of(box)) radius = std::max(radius, (corner - scene_->space.origin).length());
     };
     include(groups_[0].bounds);
     for (size_t g : moving_[-1]) {
       const TransformPair t = moving_transform(groups_[g]);
-      include(transformed(groups_[g].bounds, t.start));
-      include(transformed(groups_[g].bounds, t.end));
+      include(transform_box(t.start, groups_[g].bounds));
+      include(transform_box(t.end, groups_[g].bounds));
     }
     for (const auto& instance : description().instances) {
       const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].bounds;
       const TransformPair t = transform(instance.transform);
-      include(transformed(object, t.start));
-      if (t.animated()) include(transformed(object, t.end));
+      include(transform_box(t.start, object));
+      if (t.animated()) include(transform_box(t.end, object));
     }
     scene_->space.scale = sane_scale(radius);
     scene_radius_ = radius * scene_->space.scale;
@@ -246,16 +241,6 @@ class Builder {
   TransformPair moving_transform(const Group& g) const {
     if (g.shapes.empty()) return description().transforms[0];
     return transform(description().shapes[g.shapes[0].description].transform);
-  }
-
-  static Box3d transformed(const Box3d& box, const Mat4d& m) {
-    Box3d out;
-    if (box.isEmpty()) return out;
-    for (int c = 0; c < 8; ++c) {
-      out.extendBy(transform_point(
-          m, {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z}));
-    }
-    return out;
   }
 
   void bake_groups() {
@@ -342,31 +327,32 @@ class Builder {
 
   /// Hands a group's shapes, those from `first` on, to the ray tracer.
   void attach_shapes(const Group& group, size_t first) {
-    const std::vector<SceneShape>& shapes = scene_->shapes;
+    const std::span<const SceneShape> shapes = std::span(scene_->shapes).subspan(first);
     std::vector<std::unique_ptr<AlphaTest>> tests(shapes.size());
     std::vector<bool> has_alpha(shapes.size());
-    for (size_t i = first; i < shapes.size(); ++i) {
-      tests[i] = make_alpha_test(shapes[i], *plugins_[i], group.space.to_world() * scene_->space.from_world());
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      tests[i] = make_alpha_test(shapes[i], *plugins_[first + i], group.space.to_world() * scene_->space.from_world());
       has_alpha[i] = tests[i] != nullptr;
     }
-    Coincidences found = find_coincidences(shapes, static_cast<int>(first), static_cast<int>(shapes.size()), has_alpha);
-    for (auto& [lower, cut] : found.cuts) {
-      auto& test = tests[static_cast<size_t>(lower)];
+    Coincidences found = find_coincidences(shapes, has_alpha);
+    for (auto& [cut_shape, cut] : found.cuts) {
+      auto& test = tests[static_cast<size_t>(cut_shape)];
       test = both(std::move(test), std::move(cut));
     }
-    report_coincidences(found.pairs, has_alpha);
-    for (size_t i = first; i < shapes.size(); ++i) {
-      attach(group, shapes[i], static_cast<int>(i), tests[i].get());
+    report_coincidences(shapes, found.pairs, has_alpha);
+    for (size_t i = 0; i < shapes.size(); ++i) {
+      attach(group, shapes[i], static_cast<int>(first + i), tests[i].get());
       if (tests[i]) scene_->alpha_tests.push_back(std::move(tests[i]));
     }
   }
 
   /// Names both shapes of the first few pairs.
-  void report_coincidences(const std::vector<Coincidence>& pairs, const std::vector<bool>& has_alpha) {
+  void report_coincidences(std::span<const SceneShape> shapes, const std::vector<Coincidence>& pairs,
+                           const std::vector<bool>& has_alpha) {
     constexpr size_t kNamed = 3;
     for (size_t i = 0; i < std::min(pairs.size(), kNamed); ++i) {
-      const SceneShape& lower = scene_->shapes[static_cast<size_t>(pairs[i].lower)];
-      const SceneShape& upper = scene_->shapes[static_cast<size_t>(pairs[i].upper)];
+      const SceneShape& lower = shapes[static_cast<size_t>(pairs[i].lower)];
+      const SceneShape& upper = shapes[static_cast<size_t>(pairs[i].upper)];
       const std::string more = i + 1 == kNamed && pairs.size() > kNamed
                                    ? fmt::format("; there are {} more such pairs", pairs.size() - kNamed)
                                    : "";

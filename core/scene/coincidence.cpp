@@ -7,6 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "core/base/box.h"
+
 namespace whit {
 namespace {
 
@@ -92,19 +94,34 @@ std::vector<Vec3d> points_on(const AnalyticShape& shape) {
   return points;
 }
 
-/// Whether a flat analytic shape, a disk, shares a part of its plane with a triangle. What is curved can only touch one.
-bool coincide(const AnalyticShape& shape, const Triangle& t) {
-  const SurfacePoint any = shape.surface(shape.sample_area(0.5, 0.5).p);
-  if (any.dndu.length2() > 0 || any.dndv.length2() > 0) return false;
-  const Vec3d at = transform_point(shape.object_to_scene(), any.p),
-              dpdu = transform_vector(shape.object_to_scene(), any.dpdu);
-  const Vec3d n = dpdu.cross(transform_vector(shape.object_to_scene(), any.dpdv)).normalized();
-  const auto off_plane = [&](const Vec3d& p) { return std::abs(n.dot(p - at)) > kMeshTolerance; };
-  if (off_plane(t.a) || off_plane(t.b) || off_plane(t.c)) return false;
-  const std::vector<Vec3d> points = points_on(shape);
-  return has_surface_at(shape, (t.a + t.b + t.c) / 3, kMeshTolerance) ||
-         std::any_of(points.begin(), points.end(), [&](const Vec3d& p) { return depth_inside(t, p) >= 0; });
-}
+/// A flat analytic shape, a disk, in its group's space. What is curved can only touch a plane, and is not flat.
+class FlatShape {
+ public:
+  explicit FlatShape(const AnalyticShape& shape) : shape_(shape) {
+    const SurfacePoint any = shape.surface(shape.sample_area(0.5, 0.5).p);
+    flat_ = any.dndu.length2() == 0 && any.dndv.length2() == 0;
+    if (!flat_) return;
+    const Mat4d& m = shape.object_to_scene();
+    at_ = transform_point(m, any.p);
+    normal_ = transform_vector(m, any.dpdu).cross(transform_vector(m, any.dpdv)).normalized();
+    points_ = points_on(shape);
+  }
+
+  /// Whether it shares a part of its plane with a triangle.
+  bool coincides(const Triangle& t) const {
+    if (!flat_ || off_plane(t.a) || off_plane(t.b) || off_plane(t.c)) return false;
+    return has_surface_at(shape_, (t.a + t.b + t.c) / 3, kMeshTolerance) ||
+           std::any_of(points_.begin(), points_.end(), [&](const Vec3d& p) { return depth_inside(t, p) >= 0; });
+  }
+
+ private:
+  bool off_plane(const Vec3d& p) const { return std::abs(normal_.dot(p - at_)) > kMeshTolerance; }
+
+  const AnalyticShape& shape_;
+  bool flat_;
+  Vec3d at_, normal_;
+  std::vector<Vec3d> points_;
+};
 
 /// Cuts a shape away where upper ones lie in it. Shadow rays are blocked by either.
 class UnderOthers final : public AlphaTest {
@@ -169,11 +186,7 @@ Box3d bounds_of(const SceneShape& shape) {
   if (shape.mesh) {
     for (size_t i = 0; i < shape.mesh->triangle_count(); ++i) box.extendBy(triangle_of(*shape.mesh, i).bounds());
   } else {
-    const Box3d own = shape.analytic->object_bounds();
-    for (int c = 0; c < 8; ++c) {
-      const Vec3d corner(c & 1 ? own.max.x : own.min.x, c & 2 ? own.max.y : own.min.y, c & 4 ? own.max.z : own.min.z);
-      box.extendBy(transform_point(shape.analytic->object_to_scene(), corner));
-    }
+    box = transform_box(shape.analytic->object_to_scene(), shape.analytic->object_bounds());
   }
   box.min -= Vec3d(kMeshTolerance), box.max += Vec3d(kMeshTolerance);
   return box;
@@ -201,7 +214,7 @@ void for_neighbours(std::vector<Candidate>& candidates, const F& f) {
 /// Compares shapes and keeps what has to be cut away, and what has to be said.
 class Finder {
  public:
-  Finder(const std::vector<SceneShape>& shapes, const std::vector<bool>& has_alpha)
+  Finder(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha)
       : shapes_(shapes), has_alpha_(has_alpha) {}
 
   void compare(int lower, int upper) {
@@ -244,7 +257,8 @@ class Finder {
     const Mesh& mesh = *shapes_[static_cast<size_t>(other)].mesh;
     const Triangle a = triangle_of(*shapes_[static_cast<size_t>(shape)].mesh, prim);
     for (size_t j = 0; j < mesh.triangle_count(); ++j) {
-      if (touch(a, triangle_of(mesh, j))) cut(shape).add(prim, triangle_of(mesh, j));
+      const Triangle b = triangle_of(mesh, j);
+      if (touch(a, b)) cut(shape).add(prim, b);
     }
   }
 
@@ -270,10 +284,11 @@ class Finder {
   bool compare_with_mesh(int lower, int upper) {
     const SceneShape &l = shapes_[static_cast<size_t>(lower)], &u = shapes_[static_cast<size_t>(upper)];
     const Mesh& mesh = l.mesh ? *l.mesh : *u.mesh;
+    const FlatShape flat(l.analytic ? *l.analytic : *u.analytic);
     bool any = false;
     for (size_t i = 0; i < mesh.triangle_count(); ++i) {
       const Triangle t = triangle_of(mesh, i);
-      if (!coincide(l.analytic ? *l.analytic : *u.analytic, t)) continue;
+      if (!flat.coincides(t)) continue;
       any = true;
       if (l.analytic && !has_alpha_[static_cast<size_t>(upper)]) cut(lower).add_everywhere(t);
     }
@@ -286,7 +301,7 @@ class Finder {
     return known->second;
   }
 
-  const std::vector<SceneShape>& shapes_;
+  std::span<const SceneShape> shapes_;
   const std::vector<bool>& has_alpha_;
   std::map<int, std::unique_ptr<UnderOthers>> cuts_;
   std::map<int, bool> solids_;
@@ -308,13 +323,12 @@ class BothTests final : public AlphaTest {
 
 }  // namespace
 
-Coincidences find_coincidences(const std::vector<SceneShape>& shapes, int first, int last,
-                               const std::vector<bool>& has_alpha) {
+Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha) {
   std::vector<Candidate> candidates;
-  for (int i = first; i < last; ++i) {
-    const SceneShape& shape = shapes[static_cast<size_t>(i)];
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    const SceneShape& shape = shapes[i];
     if (shape.analytic || (shape.mesh && shape.mesh->triangle_count() <= kMostTriangles)) {
-      candidates.push_back({i, bounds_of(shape)});
+      candidates.push_back({static_cast<int>(i), bounds_of(shape)});
     }
   }
   Finder finder(shapes, has_alpha);

@@ -3,13 +3,14 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "core/scene/scene.h"
 
 namespace whit {
 
-/// Two shapes of a group, by their indices in Scene::shapes, that share a part of their surfaces; lower < upper.
+/// Two shapes of a group, by their places in it, that share a part of their surfaces; lower < upper.
 struct Coincidence {
   int lower = 0, upper = 0;
 };
@@ -20,13 +21,11 @@ struct Coincidences {
   std::vector<std::pair<int, std::unique_ptr<AlphaTest>>> cuts;  ///< By shape, in rising order.
 };
 
-/// Looks at shapes [first, last) of one group: analytic ones and meshes of at most 256 triangles, whose surfaces coincide
-/// to within what the group's floats can tell. Beyond 20,000 such shapes none is looked at, and no more after ten million
-/// comparisons of triangles. The upper shape is the one
-/// that is there, unless it is a solid that stands on the lower one: its face is then cut away, and no pair told. A shape
-/// for which `has_alpha` is true may have holes: it cuts nothing away.
-Coincidences find_coincidences(const std::vector<SceneShape>& shapes, int first, int last,
-                               const std::vector<bool>& has_alpha);
+/// Looks at the shapes of one group: analytic ones and meshes of at most 256 triangles, whose surfaces coincide to within
+/// what the group's floats can tell. Beyond 20,000 such shapes none is looked at, and no more after ten million
+/// comparisons of triangles. The upper shape is the one that is there, unless it is a solid that stands on the lower one:
+/// its face is then cut away, and no pair told. A shape for which `has_alpha` is true may have holes: it cuts nothing away.
+Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha);
 
 /// A surface that is there where neither test cuts it; both may be null, and so may the result.
 std::unique_ptr<AlphaTest> both(std::unique_ptr<AlphaTest> a, std::unique_ptr<AlphaTest> b);
