@@ -22,9 +22,6 @@ class Shape : public Plugin {
 /// the value's own place.
 inline constexpr Range kCoordinates{-std::numeric_limits<float>::max(), std::numeric_limits<float>::max()};
 
-/// For radii: a shape of radius 0 is left out with a warning (AnalyticShape::has_no_surface()).
-inline constexpr Range kNotNegative{0};
-
 /// The alpha parameters of shapes that can be cut out.
 inline auto alpha_param() {
   return param(&Shape::alpha, "alpha", 1.0f, Unit::None, "Where this is exactly 0 the surface is cut away.");

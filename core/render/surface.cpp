@@ -198,15 +198,9 @@ Vec3f to_float(const Vec3d& v) {
   return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
 
-/// m applied to a point, one coordinate; m is affine.
+/// m applied to a point, one coordinate; m is affine, so that nothing is divided, unlike by transform_point().
 [[gnu::always_inline]] inline double affine(const Mat4d& m, int c, double x, double y, double z) {
   return x * m[0][c] + y * m[1][c] + z * m[2][c] + m[3][c];
-}
-
-/// The linear part of m applied to v; unlike Imath's, without a branch.
-[[gnu::always_inline]] inline Vec3d linear(const Mat4d& m, const Vec3d& v) {
-  const auto row = [&](int c) { return v.x * m[0][c] + v.y * m[1][c] + v.z * m[2][c]; };
-  return {row(0), row(1), row(2)};
 }
 
 [[gnu::always_inline]] inline Vec3d unit_vector(const Vec3d& v) { return v * (1 / std::sqrt(v.dot(v))); }
@@ -215,7 +209,7 @@ Vec3f to_float(const Vec3d& v) {
 /// there, whatever the matrix's scale.
 [[gnu::always_inline]] inline Vec3d transform_normal_change(const Mat4d& normal_matrix, const Vec3d& n,
                                                             const Vec3d& dn) {
-  const Vec3d m = linear(normal_matrix, n), d = linear(normal_matrix, dn);
+  const Vec3d m = transform_vector(normal_matrix, n), d = transform_vector(normal_matrix, dn);
   const double length2 = m.dot(m);
   return (d - m * (m.dot(d) / length2)) * (1 / std::sqrt(length2));
 }
@@ -272,7 +266,7 @@ void place_points(const Mat4d& m, const SurfacePointLanes& in, const ShadingBatc
     s.p.set(i, p);
     s.p_error.set(i, {error_of(0, q.x, p.x), error_of(1, q.y, p.y), error_of(2, q.z, p.z)});
     s.u[i] = static_cast<float>(in.u[i]), s.v[i] = static_cast<float>(in.v[i]);
-    const Vec3d dpdu = linear(m, in.dpdu[i]), dpdv = linear(m, in.dpdv[i]);
+    const Vec3d dpdu = transform_vector(m, in.dpdu[i]), dpdv = transform_vector(m, in.dpdv[i]);
     g.dpdu.set(i, to_float(dpdu)), g.dpdv.set(i, to_float(dpdv));
     s.dpdu.set(i, to_float(dpdu)), s.dpdv.set(i, to_float(dpdv));
     // pbrt flips the object's normal and then transforms it: the cross product's own change of sign goes.

@@ -63,7 +63,7 @@ struct Cone final : AnalyticShape {
 const Register<Cone> cone{"shape",
                           "cone",
                           "An open cone with its base in the xy plane and its tip on the z axis.",
-                          param(&Cone::radius, "radius", 1.0f, Unit::Length, "Radius of the base.", kNotNegative),
+                          param(&Cone::radius, "radius", 1.0f, Unit::Length, "Radius of the base.", kNonNegative),
                           param(&Cone::height, "height", 1.0f, Unit::Length, "Height of the tip.", kPositive),
                           param(&Cone::phimax, "phimax", 360.0f, Unit::Degrees,
                                 "Sweep around z, from x; above 360 is a full turn.", kPositive)};

@@ -58,7 +58,7 @@ struct Cylinder final : AnalyticShape {
 const Register<Cylinder> cylinder{"shape",
                                   "cylinder",
                                   "An open cylinder around the z axis.",
-                                  param(&Cylinder::radius, "radius", 1.0f, Unit::Length, "Radius.", kNotNegative),
+                                  param(&Cylinder::radius, "radius", 1.0f, Unit::Length, "Radius.", kNonNegative),
                                   param(&Cylinder::zmin, "zmin", -1.0f, Unit::Length, "Lower end."),
                                   param(&Cylinder::zmax, "zmax", 1.0f, Unit::Length, "Upper end."),
                                   param(&Cylinder::phimax, "phimax", 360.0f, Unit::Degrees,

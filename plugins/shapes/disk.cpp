@@ -87,7 +87,7 @@ const Register<Disk> disk{
     "disk",
     "A disk, or a sector of a ring, across the z axis.",
     param(&Disk::height, "height", 0.0f, Unit::Length, "Where on the z axis it lies."),
-    param(&Disk::radius, "radius", 1.0f, Unit::Length, "Outer radius.", kNotNegative),
+    param(&Disk::radius, "radius", 1.0f, Unit::Length, "Outer radius.", kNonNegative),
     param(&Disk::innerradius, "innerradius", 0.0f, Unit::Length, "Radius of the hole.", kNonNegative),
     param(&Disk::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",
           kPositive)};

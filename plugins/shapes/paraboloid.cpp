@@ -71,7 +71,7 @@ const Register<Paraboloid> paraboloid{
     "shape",
     "paraboloid",
     "A paraboloid around the z axis, open upwards, with its lowest point at the origin.",
-    param(&Paraboloid::radius, "radius", 1.0f, Unit::Length, "Radius at zmax.", kNotNegative),
+    param(&Paraboloid::radius, "radius", 1.0f, Unit::Length, "Radius at zmax.", kNonNegative),
     param(&Paraboloid::zmin, "zmin", 0.0f, Unit::Length, "Lower end."),
     param(&Paraboloid::zmax, "zmax", 1.0f, Unit::Length, "Upper end, above 0."),
     param(&Paraboloid::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",

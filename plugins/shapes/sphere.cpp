@@ -279,7 +279,7 @@ const Register<Sphere> sphere{
     "shape",
     "sphere",
     "A sphere around the origin, or a part of one.",
-    param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kNotNegative),
+    param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kNonNegative),
     param(&Sphere::zmin, "zmin", Unit::Length, "Lower end of the part that is there; -radius by default."),
     param(&Sphere::zmax, "zmax", Unit::Length, "Upper end of the part that is there; radius by default."),
     param(&Sphere::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z, from x; above 360 is a full turn.",
