@@ -10,21 +10,11 @@ namespace {
 
 using namespace test;
 
-/// A picture and what was said while its scene was built.
-struct Told {
-  std::vector<float> rgb;
-  Diagnostics said;
-
-  explicit Told(const std::string& text, int threads = 0) {
-    Planned planned(text);
-    TextureStore textures;
-    const std::unique_ptr<Scene> scene =
-        build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
-    RenderOptions options;
-    options.threads = threads;
-    rgb = render(*scene, options).picture.rgb;
-  }
-};
+Rendered picture_of(const std::string& text, int threads = 0) {
+  RenderOptions options;
+  options.threads = threads;
+  return Rendered(text, {}, options, Planned::Warnings::Allowed);
+}
 
 std::string world(const std::string& shapes) {
   return "Film \"image\" \"integer xresolution\" 120 \"integer yresolution\" 90\n"
@@ -78,21 +68,22 @@ TEST(Hard, CoincidentSurfaces) {
       {9, "a warning names both shapes", "the same pairs", "pairs without, or without both places", 0, "says nothing"});
   for (const Pair& pair : pairs()) {
     const std::string lower = glowing("1 0 0", pair.lower), upper = glowing("0 1 0", pair.upper);
-    const Told together(world(lower + upper), 1), again(world(lower + upper), 2), alone(world(upper), 1);
+    const Rendered together = picture_of(world(lower + upper), 1), again = picture_of(world(lower + upper), 2);
+    const Rendered alone = picture_of(world(upper), 1);
     // The ground fills the view and glows with 1 in red: what of a pixel's samples is not green is red. Sums of 16
     // sixteenths are exact.
     // What may go wrong is the rim of the upper, 3e-5 of a group's hundred units: where it is 10 units around and the
     // group 30 wide, that is 10 * 1e-5 of the 20 square units in view, 5e-6 of the samples.
     double off = 0;
-    for (size_t i = 0; i < together.rgb.size(); i += 3) {
-      off += std::abs(static_cast<double>(together.rgb[i + 1] - alone.rgb[i + 1]));
-      EXPECT_EQ(together.rgb[i] + together.rgb[i + 1], 1) << pair.name;
+    for (size_t i = 0; i < together.rgb().size(); i += 3) {
+      off += std::abs(static_cast<double>(together.rgb()[i + 1] - alone.rgb()[i + 1]));
+      EXPECT_EQ(together.rgb()[i] + together.rgb()[i + 1], 1) << pair.name;
     }
     speckle.see(off / (120 * 90), pair.name);
-    threads.see(together.rgb == again.rgb ? 0 : 1, pair.name);
-    const auto& said = together.said.all();
+    threads.see(together.rgb() == again.rgb() ? 0 : 1, pair.name);
+    const auto& said = together.warnings.all();
     warned.see(said.size() == 1 && said[0].where.known() && said[0].other.known() &&
-                       said[0].where.offset < said[0].other.offset && alone.said.all().empty()
+                       said[0].where.offset < said[0].other.offset && alone.warnings.all().empty()
                    ? 0
                    : 1,
                pair.name);
@@ -117,11 +108,11 @@ TEST(Hard, SolidsOnTheGround) {
         "Sampler \"halton\" \"integer pixelsamples\" 4\nLookAt 0 0 9  0 0 0  0 1 0\n"
         "Camera \"perspective\" \"float fov\" 2\nWorldBegin\n" +
         shapes + "WorldEnd\n";
-    const Told picture(text);
-    EXPECT_TRUE(picture.said.all().empty());
+    const Rendered picture = picture_of(text);
+    EXPECT_TRUE(picture.warnings.all().empty());
     int off = 0;
     // A camera outside sees radiance L inside the glass as 0.96 L / 1.5^2.
-    for (const float v : picture.rgb) off += std::abs(static_cast<double>(v) - 0.96 / 2.25) > 1e-3;
+    for (const float v : picture.rgb()) off += std::abs(static_cast<double>(v) - 0.96 / 2.25) > 1e-3;
     dark.see(off);
   }
 }

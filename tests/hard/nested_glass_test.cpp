@@ -24,6 +24,22 @@ double transmittance(double x, double r, double n_outside, double n_inside) {
   return 1 - reflectance(std::sqrt((1 - sine) * (1 + sine)), n_inside / n_outside);
 }
 
+/// Calls f(gap, offset, size) over the sweep that both cases of nested spheres share.
+template <class F>
+void for_gaps(const F& f) {
+  for (const double gap : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+    for (const double x : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
+      for (const double size : {1e-4, 1.0, 1e4}) f(gap, x, size);
+    }
+  }
+}
+
+/// How far what is seen of a world along the line at offset x is from `expected`, as a part of it.
+void compare(HardCase& worst, const std::string& world, double expected, double gap, double x, double size) {
+  const double seen = static_cast<double>(look_along(x, world, 8, size).pixel(0, 0).x);
+  worst.see(std::abs(seen / expected - 1), fmt::format("gap {} offset {} size {}", gap, x, size));
+}
+
 TEST(Hard, ConcentricSpheres) {
   // Glass around a liquid around an emitter of radiance 1: T T' / 1.33^2, if every boundary is met once and in its order;
   // where the emitter is met first, 1, where a boundary is missed, another index. The emitter reflects nothing.
@@ -31,24 +47,17 @@ TEST(Hard, ConcentricSpheres) {
                   "gaps 1e-2 to 1e-6, offsets 0 to 0.9, sizes 1e-4 "
                   "to 1e4",
                   "relative error of the radiance", 1e-5, ""});
-  for (const double gap : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    for (const double x : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
-      for (const double size : {1e-4, 1.0, 1e4}) {
-        for (const bool outer_first : {true, false}) {
-          const std::string glass = boundary(1, 1.5), liquid = boundary(1 - gap, 1.33 / 1.5);
-          const std::string world =
-              (outer_first ? glass + liquid : liquid + glass) +
-              fmt::format(
-                  "Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
-                  "Shape \"sphere\" \"float radius\" {:.9g}",
-                  1 - 2 * gap);
-          const double expected = transmittance(x, 1, 1, 1.5) * transmittance(x, 1 - gap, 1.5, 1.33) / (1.33 * 1.33);
-          const double seen = static_cast<double>(look_along(x, world, 8, size).pixel(0, 0).x);
-          order.see(std::abs(seen / expected - 1), fmt::format("gap {} offset {} size {}", gap, x, size));
-        }
-      }
+  for_gaps([&](double gap, double x, double size) {
+    const std::string glass = boundary(1, 1.5), liquid = boundary(1 - gap, 1.33 / 1.5);
+    const std::string emitter = fmt::format(
+        "Material \"matte\" \"rgb Kd\" [0 0 0] AreaLightSource \"diffuse\" \"rgb L\" [1 1 1]\n"
+        "Shape \"sphere\" \"float radius\" {:.9g}",
+        1 - 2 * gap);
+    const double expected = transmittance(x, 1, 1, 1.5) * transmittance(x, 1 - gap, 1.5, 1.33) / (1.33 * 1.33);
+    for (const std::string& world : {glass + liquid + emitter, liquid + glass + emitter}) {
+      compare(order, world, expected, gap, x, size);
     }
-  }
+  });
 }
 
 TEST(Hard, ThinBubbles) {
@@ -58,16 +67,10 @@ TEST(Hard, ThinBubbles) {
                    "thickness 1e-2 to 1e-6, offsets 0 to 0.9, sizes 1e-4 to "
                    "1e4",
                    "relative error of the radiance", 1e-5, ""});
-  for (const double gap : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-    for (const double x : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
-      for (const double size : {1e-4, 1.0, 1e4}) {
-        const std::string world = "LightSource \"infinite\"\n" + boundary(1, 1.5) + boundary(1 - gap, 1 / 1.5);
-        const double t = transmittance(x, 1, 1, 1.5) * transmittance(x, 1 - gap, 1.5, 1);
-        const double seen = static_cast<double>(look_along(x, world, 8, size).pixel(0, 0).x);
-        shells.see(std::abs(seen / (t * t) - 1), fmt::format("gap {} offset {} size {}", gap, x, size));
-      }
-    }
-  }
+  for_gaps([&](double gap, double x, double size) {
+    const double t = transmittance(x, 1, 1, 1.5) * transmittance(x, 1 - gap, 1.5, 1);
+    compare(shells, "LightSource \"infinite\"\n" + boundary(1, 1.5) + boundary(1 - gap, 1 / 1.5), t * t, gap, x, size);
+  });
 }
 
 TEST(Hard, CoincidentBoundaries) {

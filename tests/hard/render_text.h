@@ -13,11 +13,13 @@ namespace whit::test {
 /// The picture of a scene's text, with every sample a number: the gate of all hard cases.
 struct Rendered {
   RenderResult result;
+  Diagnostics warnings;  ///< Where they are allowed.
 
   explicit Rendered(const std::string& text, const BuildOptions& build = {}, const RenderOptions& options = {},
                     Planned::Warnings mode = Planned::Warnings::Failures) {
     const BuiltScene built(text, build, mode);
     result = render(*built.scene, options);
+    warnings = built.warnings;
     EXPECT_EQ(result.statistics.invalid_samples, 0)
         << "first at " << result.statistics.first_invalid_pixel.x << ' ' << result.statistics.first_invalid_pixel.y;
   }

@@ -19,7 +19,7 @@ struct Planned {
   ParseResult parsed;
   BoundScene bound;
   EffectPlan plan;
-  Diagnostics warnings;  ///< Of binding, where they are allowed.
+  Diagnostics warnings;  ///< Of binding and building, where they are allowed.
 
   enum class Warnings { Failures, Allowed };
   explicit Planned(const std::string& text, Warnings mode = Warnings::Failures)
@@ -53,6 +53,7 @@ struct BuiltScene : Planned {
     Diagnostics said;
     scene = build_scene(std::move(bound), std::move(plan), options, textures, said);
     if (mode == Warnings::Failures) expect_silence(said);
+    warnings.append(said);
     if (!scene) throw std::runtime_error("not built");
   }
 };
