@@ -8,6 +8,7 @@
 #include "core/batch/arena.h"
 #include "core/batch/lanes.h"
 #include "core/batch/shading.h"
+#include "core/plugin/effect.h"
 
 namespace whit {
 
@@ -48,6 +49,22 @@ constexpr bool is_transmission(LobeType t) {
          t == LobeType::DisneyTransmission || t == LobeType::SpecularTransmission;
 }
 
+/// The effect that a lobe is part of; sheens are diffuse and coats glossy, as in pbrt-v3.
+constexpr Effect effect_of(LobeType t) {
+  switch (t) {
+    case LobeType::SpecularReflection: return Effect::Reflection;
+    case LobeType::SpecularTransmission: return Effect::Refraction;
+    case LobeType::LambertReflection:
+    case LobeType::LambertTransmission:
+    case LobeType::OrenNayar:
+    case LobeType::DisneyDiffuse:
+    case LobeType::DisneyFakeSubsurface:
+    case LobeType::DisneyRetro:
+    case LobeType::DisneySheen: return Effect::Diffuse;
+    default: return Effect::Glossy;
+  }
+}
+
 /// One lobe over n points. A lane with a black weight does not have the lobe.
 struct Lobe {
   LobeType type = LobeType::LambertReflection;
@@ -70,6 +87,15 @@ class LobeSet {
   void add(const Lobe& lobe) {
     if (count == capacity_) grow();
     lobes[count++] = lobe;
+  }
+
+  /// Drops the lobes of other effects.
+  void keep(const EffectSet& effects) {
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+      if (effects.has(effect_of(lobes[i].type))) lobes[kept++] = lobes[i];
+    }
+    count = kept;
   }
 
   int count = 0;

@@ -26,9 +26,10 @@ void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour
 }  // namespace
 
 EffectSet DielectricSurface::surface_effects() const {
-  EffectSet e = effects_of(*this, Kr, Kt, uroughness, vroughness);
-  if (may_be_smooth() && !is_black(Kr)) e.add(Effect::Mirror);
-  if (may_be_smooth() && !is_black(Kt)) e.add(Effect::Refraction);
+  EffectSet e;
+  if (may_be_smooth()) {
+    e = effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
+  }
   if (may_be_rough() && !(is_black(Kr) && is_black(Kt))) e.add(Effect::Glossy);
   return e;
 }

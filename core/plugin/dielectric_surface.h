@@ -14,7 +14,7 @@ class DielectricSurface : public Material {
   bool remaproughness = true;
 
  protected:
-  /// Effects of the parameters above and of the bump map.
+  /// The effects of the lobes.
   EffectSet surface_effects() const;
 
   /// Adds the lobes; a black Kr or Kt has none. `eta` is the index inside over that outside, at each point of s.

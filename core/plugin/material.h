@@ -15,6 +15,11 @@ class Material : public Plugin {
   /// Adds the lobes of the s.n points to `out`. Arrays come from s.arena. Weights are clamped to >= 0 by clamp0.
   virtual void lobes(const ShadingBatch& s, LobeSet& out) const = 0;
 
+  /// The lobes it may have, as effects; all of them for a material that does not say. What it does not name is dropped.
+  EffectSet effects() const override {
+    return {Effect::Diffuse, Effect::Glossy, Effect::Reflection, Effect::Refraction};
+  }
+
   /// True for a material that is not there (pbrt's "none"): rays pass on unchanged and nothing is shaded.
   virtual bool is_interface() const { return false; }
 };

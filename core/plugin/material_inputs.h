@@ -32,13 +32,9 @@ inline bool is_black(const Tex<RGB>& colour) {
   return colour.is_constant() && v.x <= 0 && v.y <= 0 && v.z <= 0;
 }
 
-/// The effects of a material's textures and of its bump map.
-template <class... Textures>
-EffectSet effects_of(const Material& material, const Textures&... textures) {
-  EffectSet e = material.bump.effects();
-  ((e |= textures.effects()), ...);
-  if (!material.bump.is_constant()) e.add(Effect::Bump);
-  return e;
+/// The effect of a lobe unless its colour is black.
+inline EffectSet effect_unless_black(Effect lobe, const Tex<RGB>& colour) {
+  return is_black(colour) ? EffectSet{} : EffectSet{lobe};
 }
 
 }  // namespace whit

@@ -211,10 +211,10 @@ bool read_texture(const Parameter& p, const BindContext& ctx, Tex<T>& out) {
     return fail(ctx, ctx.at(p), called(p, ctx) + " names an unknown " + wanted + " texture: \"" + ref.name + '"',
                 "a texture must be defined before it is used");
   std::shared_ptr<Texture<T>> texture;
-  if constexpr (wants_float) texture = ctx.float_texture(index);
-  else texture = ctx.spectrum_texture(index);
+  if constexpr (wants_float) texture = ctx.float_texture(index, p.name);
+  else texture = ctx.spectrum_texture(index, p.name);
   if (!texture) return false;  // its own statement has the error
-  out = Tex<T>(std::move(texture));
+  if (ctx.with_textures || texture->constant()) out = Tex<T>(std::move(texture));
   return true;
 }
 

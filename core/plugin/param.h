@@ -83,9 +83,11 @@ struct BindContext {
   SourcePos statement;         ///< The directive being bound.
   std::string statement_name;  ///< "sphere", for messages.
   std::string folder;          ///< Of the main scene file; relative paths start here.
-  /// The bound texture of a TextureRef in the float or spectrum name space; null when there is none.
-  std::function<std::shared_ptr<Texture<float>>(int)> float_texture;
-  std::function<std::shared_ptr<Texture<RGB>>(int)> spectrum_texture;
+  /// The bound texture of a TextureRef in the float or spectrum name space, for the parameter named; null when there is
+  /// none.
+  std::function<std::shared_ptr<Texture<float>>(int, const std::string&)> float_texture;
+  std::function<std::shared_ptr<Texture<RGB>>(int, const std::string&)> spectrum_texture;
+  bool with_textures = true;  ///< Else a parameter that names one which is not constant keeps its default.
   /// The bound material of a name (for mix); null when there is none.
   std::function<std::shared_ptr<class Material>(const std::string&)> named_material;
   /// The place of the i-th value of a parameter.
@@ -103,6 +105,7 @@ struct ParamSpec {
   Range range;
   std::string doc;
   std::vector<std::string> choices;  ///< Of a Choice, else empty.
+  bool is_file = false;              ///< Its value is the path of a file.
   /// Stores the parameter's value into the plugin, which must be of the class the spec was declared for.
   /// Reports errors; returns false after an error.
   std::function<bool(Plugin& plugin, const Parameter&, const BindContext&)> bind;
@@ -159,6 +162,7 @@ DeclaredParam<Class, T> declare(T Class::*member, const char* name, T default_va
   d.spec.unit = unit;
   d.spec.range = range;
   d.spec.doc = doc;
+  d.spec.is_file = std::is_same_v<T, FileName>;
   d.spec.bind = [member, range](Plugin& plugin, const Parameter& p, const BindContext& ctx) {
     return Binding<T>::read(p, ctx, range, static_cast<Class&>(plugin).*member);
   };

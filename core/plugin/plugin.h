@@ -2,49 +2,15 @@
 // (files read, tables built) only when the plan keeps it.
 #pragma once
 
-#include <cstdint>
-#include <string>
+#include <string_view>
 
 #include "core/base/diagnostics.h"
 #include "core/base/render_space.h"
+#include "core/plugin/effect.h"
 
 namespace whit {
 
 class TextureStore;
-
-/// The effects a scene can call for. A stage exists in the render loop only when an effect needs it.
-enum class Effect : uint8_t {
-  AreaLight,
-  EnvironmentLight,
-  DeltaLight,
-  Mirror,
-  Refraction,
-  Glossy,
-  TextureFiltering,
-  Bump,
-  AlphaMask,
-  MotionBlur,
-  DepthOfField,
-  Instancing,
-  Interface,
-  kCount
-};
-const char* effect_name(Effect e);
-
-/// A set of effects.
-struct EffectSet {
-  uint32_t bits = 0;
-  EffectSet() = default;
-  EffectSet(std::initializer_list<Effect> list) {
-    for (Effect e : list) add(e);
-  }
-  void add(Effect e) { bits |= 1u << static_cast<unsigned>(e); }
-  bool has(Effect e) const { return (bits >> static_cast<unsigned>(e)) & 1u; }
-  EffectSet& operator|=(const EffectSet& o) {
-    bits |= o.bits;
-    return *this;
-  }
-};
 
 /// What preparing a plugin may use.
 struct PrepareContext {
@@ -65,8 +31,11 @@ class Plugin {
   /// Checks that go across parameters ("number of indices is not a multiple of three"); reads no file.
   virtual void check(Diagnostics&, SourcePos /*statement*/) {}
 
-  /// The effects the bound parameters call for.
+  /// The effects the bound parameters call for, but for those of the textures they are, which have their own.
   virtual EffectSet effects() const { return {}; }
+
+  /// Whether the textures given for a parameter are ever evaluated; those that are not are not read. After binding.
+  virtual bool reads(std::string_view /*parameter*/) const { return true; }
 
   /// Reads files and builds tables. Returns false after reporting an error.
   virtual bool prepare(const PrepareContext&) { return true; }

@@ -16,6 +16,12 @@ class Shape : public Plugin {
  public:
   Tex<float> alpha{1.0f};         ///< Where exactly 0 the surface is not there.
   Tex<float> shadow_alpha{1.0f};  ///< The same, for shadow rays only, in addition to alpha.
+
+  /// Whether parts of it are cut away, or may be.
+  bool is_cut_out() const {
+    const auto cuts = [](const Tex<float>& a) { return !a.is_constant() || a.value() == 0; };
+    return cuts(alpha) || cuts(shadow_alpha);
+  }
 };
 
 /// For lists of coordinates: any number that is one. NaN, infinity and what a float cannot hold are errors at

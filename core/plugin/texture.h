@@ -58,13 +58,13 @@ class Tex {
   const T& value() const { return value_; }
   /// The texture, or null when constant.
   const std::shared_ptr<Texture<T>>& texture() const { return texture_; }
-  EffectSet effects() const { return texture_ ? texture_->effects() : EffectSet{}; }
 
   /// The value at every point of s, in s.arena.
   typename ValueLanes<T>::type operator()(const ShadingBatch& s) const {
     const auto out = ValueLanes<T>::alloc(*s.arena, s.n);
-    if (texture_) {
+    if (compiled_in(Effect::Textures) && texture_) {
       const StageScope stage(s.clock, Stage::Textures);
+      if (s.texture_values) *s.texture_values += s.n;
       texture_->evaluate(s, out);
     } else {
       const T v = value_;

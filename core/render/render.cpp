@@ -15,6 +15,7 @@
 
 #include "core/render/flush_denormals.h"
 #include "core/render/trace.h"
+#include "core/scene/alpha.h"
 
 namespace whit {
 namespace {
@@ -86,6 +87,7 @@ class FilmRender {
     FlushDenormals flush;
     Worker& worker = workers_.local();
     worker.start_clock();
+    take_alpha_tests();
     const Vec2i tile = first_tile_ + Vec2i(static_cast<int>(t) % tiles_x_, static_cast<int>(t) / tiles_x_);
     const int x0 = std::max(tile.x * TileSums::kTile, samples_.min.x);
     const int x1 = std::min((tile.x + 1) * TileSums::kTile, samples_.max.x);
@@ -104,6 +106,7 @@ class FilmRender {
     }
     if (n > 0) render_samples(worker, tiles_[t], n, px, py, index);
     worker.stop_clock();
+    worker.statistics.alpha_tests += take_alpha_tests();
     if (options_.tile_done) preview_tile(tiles_[t], {{x0, y0}, {x1, y1}});
     report_progress();
   }

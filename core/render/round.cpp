@@ -47,7 +47,7 @@ void Round::intersect() {
     ray_ry_o_ = rays_.ry_o.from(first_), ray_ry_d_ = rays_.ry_d.from(first_);
   }
   scene_.accel->intersect({count_, ray_o_, ray_d_, nullptr, time}, ray_hits_, depth_ == 0);
-  if (scene_.plan.live(Effect::Interface)) pass_through_interfaces();
+  if (scene_.plan.live(Effect::Interfaces)) pass_through_interfaces();
   if (worker_.log) worker_.log->rays(*this);
 }
 
@@ -101,7 +101,7 @@ void Round::pass_through_interfaces() {
 void Round::add_escaped() {
   const StageScope stage(worker_.clock(), Stage::LightSampling);
   report_lost_rays();
-  if (scene_.environments.empty()) return;
+  if (!scene_.plan.live(Effect::EnvironmentLights)) return;
   ArenaScope scope(arena_);
   int32_t* lanes = arena_.alloc<int32_t>(count_);
   int n = 0;
@@ -179,7 +179,7 @@ void Round::find_surfaces() {
     keys[i] = scene_.shapes[static_cast<size_t>(ray_hits_.shape[i])].sort_key;
     ray_of_[n++] = i;
   }
-  sort_lanes(keys, n, ray_of_, arena_);
+  if (scene_.sort_keys > 1 || scene_.plan.everything_on) sort_lanes(keys, n, ray_of_, arena_);
   // As where one material fills the view.
   const bool in_place = n == count_ && std::is_sorted(ray_of_, ray_of_ + n);
   if (in_place) take_hits();
@@ -195,8 +195,9 @@ void Round::find_surfaces() {
   });
   points_ = compute_surfaces(scene_, hits_, arena_);
   points_.clock = worker_.clock();
+  points_.texture_values = &worker_.statistics.texture_values;
   worker_.statistics.surface_points += n;
-  if (hits_.rx_o) worker_.statistics.footprints += n;
+  if (hits_.has_differentials()) worker_.statistics.footprints += n;
   shade_runs();
   if (needs_numbers()) keys_ = make_keys();
   if (worker_.log) worker_.log->surfaces(*this);
@@ -212,8 +213,9 @@ void Round::shade_runs() {
     runs_.push_back({points_.range(first, last - first), LobeSet(arena_), {}, first});
     Run& run = runs_.back();
     const Material& material = *scene_.materials[static_cast<size_t>(material_of(first))];
-    if (!material.bump.is_constant()) apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
+    if (scene_.plan.live(Effect::Bump)) apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
     material.lobes(run.points, run.lobes);
+    run.lobes.keep(scene_.plan.lobes());
     for (int l = 0; l < run.lobes.count; ++l) {
       const LobeType type = run.lobes.lobes[l].type;
       run.scatters |= !is_specular(type);
@@ -226,7 +228,7 @@ void Round::shade_runs() {
 
 void Round::add_emitted() {
   const StageScope stage(worker_.clock(), Stage::LightSampling);
-  if (!scene_.plan.live(Effect::AreaLight)) return;
+  if (!scene_.plan.live(Effect::AreaLights)) return;
   for (int i = 0; i < hits_.n; ++i) {
     const int e = scene_.shapes[static_cast<size_t>(hits_.shape[i])].emission;
     if (e < 0) continue;

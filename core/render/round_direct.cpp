@@ -95,8 +95,12 @@ void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples,
   uint8_t* blocked = arena_.alloc<uint8_t>(n);
   // The back of a two-sided light is seen past its front.
   const int target = light.light || light.two_sided ? -1 : light.shape;
-  scene_.accel->occluded({n, o, d, t_max, time, target}, blocked);
-  worker_.statistics.shadow_rays += n;
+  if (scene_.plan.live(Effect::Shadows)) {
+    scene_.accel->occluded({n, o, d, t_max, time, target}, blocked);
+    worker_.statistics.shadow_rays += n;
+  } else {
+    std::fill_n(blocked, n, uint8_t{0});
+  }
   for (int i = 0; i < n; ++i) {
     const int to = lanes[i];
     const float open = blocked[i] ? 0.0f : 1.0f;

@@ -13,13 +13,17 @@ namespace whit {
 Round::Spawned Round::allocate_spawned() {
   const int n = hits_.n;
   Spawned s{arena_.vec3(n), arena_.rgb(n), {}, {}, {}, {}};
-  if (hits_.rx_o) s.rx_o = arena_.vec3(n), s.rx_d = arena_.vec3(n), s.ry_o = arena_.vec3(n), s.ry_d = arena_.vec3(n);
+  if (hits_.has_differentials())
+    s.rx_o = arena_.vec3(n), s.rx_d = arena_.vec3(n), s.ry_o = arena_.vec3(n), s.ry_d = arena_.vec3(n);
   return s;
 }
 
 void Round::spawn_specular() {
   bool mirrors = false, refracts = false;
+  const EffectPlan& plan = scene_.plan;
   for (const Run& run : runs_) mirrors |= run.mirrors, refracts |= run.refracts;
+  mirrors = plan.live(Effect::Reflection) && (mirrors || plan.everything_on);
+  refracts = plan.live(Effect::Refraction) && (refracts || plan.everything_on);
   if (!mirrors && !refracts) return;
   const StageScope stage(worker_.clock(), Stage::Spawn);
   ArenaScope scope(arena_);
@@ -51,7 +55,7 @@ void Round::spawn(bool refraction, const Spawned& out) {
     } else {
       specular_reflection(run.lobes, run.points, u, wi, weight);
     }
-    if (hits_.rx_o) spawn_differentials(run, refraction, out);
+    if (hits_.has_differentials()) spawn_differentials(run, refraction, out);
   }
 }
 

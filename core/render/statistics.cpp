@@ -16,6 +16,8 @@ void RenderStatistics::add(const RenderStatistics& o) {
   camera_rays += o.camera_rays, reflection_rays += o.reflection_rays, refraction_rays += o.refraction_rays;
   passing_rays += o.passing_rays, shadow_rays += o.shadow_rays;
   surface_points += o.surface_points, footprints += o.footprints;
+  time_samples += o.time_samples, lens_samples += o.lens_samples;
+  texture_values += o.texture_values, alpha_tests += o.alpha_tests;
   for (size_t s = 0; s < kStages; ++s) stage_seconds[s] += o.stage_seconds[s];
   if (o.invalid_samples == 0) return;
   const int64_t total = invalid_samples + o.invalid_samples;

@@ -13,6 +13,9 @@ struct RenderStatistics {
   int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, passing_rays = 0, shadow_rays = 0;
   std::array<double, kStages> stage_seconds{};  ///< Over all workers; zero when stages are not timed.
   int64_t surface_points = 0, footprints = 0;
+  int64_t time_samples = 0, lens_samples = 0;
+  int64_t texture_values = 0;  ///< Points that textures were evaluated at for materials.
+  int64_t alpha_tests = 0;     ///< Hits that alpha masks were asked about.
 
   int64_t invalid_samples = 0;        ///< NaN, infinite or of negative luminance: left out of the picture.
   Vec2i first_invalid_pixel{-1, -1};  ///< In picture order.

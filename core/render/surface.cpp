@@ -214,6 +214,10 @@ Vec3f to_float(const Vec3d& v) {
   return (d - m * (m.dot(d) / length2)) * (1 / std::sqrt(length2));
 }
 
+bool has_instances(const Scene& scene) {
+  return kKnowsInstances && (!scene.instances.empty() || scene.plan.everything_on);
+}
+
 /// The group's local space of a hit: render space itself for world geometry.
 Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   if (h.instance[i] < 0) return Mat4d();
@@ -236,7 +240,7 @@ void object_hits(const Scene& scene, const SurfaceHits& h, int first, const Mat4
     };
     out.p.set(i, {at(h.o.x, h.d.x), at(h.o.y, h.d.y), at(h.o.z, h.d.z)});
   });
-  for (int i = 0; i < out.n && !scene.instances.empty(); ++i) {
+  for (int i = 0; i < out.n && has_instances(scene); ++i) {
     if (h.instance[first + i] >= 0) out.p.set(i, transform_point(render_to_local(scene, h, first + i), out.p[i]));
   }
   for_lanes(out.n, [&](int i) {
@@ -456,7 +460,7 @@ ShadingBatch allocate(const SurfaceHits& h, Arena& arena) {
   s.ng = arena.vec3(h.n), s.ns = arena.vec3(h.n), s.dpdu = arena.vec3(h.n), s.dpdv = arena.vec3(h.n);
   s.u = arena.floats(h.n), s.v = arena.floats(h.n);
   s.flips = arena.alloc<uint8_t>(h.n);
-  if (h.rx_o) {
+  if (h.has_differentials()) {
     s.dndu = arena.vec3(h.n), s.dndv = arena.vec3(h.n);
     s.dudx = arena.floats(h.n), s.dvdx = arena.floats(h.n), s.dudy = arena.floats(h.n), s.dvdy = arena.floats(h.n);
     s.dpdx = arena.vec3(h.n), s.dpdy = arena.vec3(h.n);
@@ -485,8 +489,8 @@ ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& a
       curve_surfaces(scene, h, first, run, partials);
     }
   }
-  if (!scene.instances.empty()) place_surfaces(scene, h, s, g);
-  if (h.rx_o) compute_footprints(h, s, g);
+  if (has_instances(scene)) place_surfaces(scene, h, s, g);
+  if (h.has_differentials()) compute_footprints(h, s, g);
   return s;
 }
 

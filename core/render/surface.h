@@ -16,6 +16,8 @@ struct SurfaceHits {
   uint32_t* prim = nullptr;
   const float* time = nullptr;       ///< In [0,1] over the transform times; null when nothing moves.
   Vec3Lanes rx_o, rx_d, ry_o, ry_d;  ///< Null when no effect needs differentials.
+
+  bool has_differentials() const { return kKnowsDifferentials && rx_o; }
 };
 
 /// Computes the shading batch of the hits. Derivatives of normals and footprints exist when the hits carry

@@ -16,7 +16,7 @@ SampleChunk allocate_chunk(Worker& worker, int n) {
   c.n = n;
   c.px = arena.alloc<int32_t>(n), c.py = arena.alloc<int32_t>(n), c.index = arena.alloc<uint32_t>(n);
   c.film_x = arena.floats(n), c.film_y = arena.floats(n);
-  if (worker.scene.plan.needs_time) c.time = arena.floats(n);
+  if (worker.scene.plan.live(Effect::MotionBlur)) c.time = arena.floats(n);
   c.ray_weight = arena.floats(n);
   c.radiance = arena.rgb(n);
   for_lanes(n, [&](int i) { c.radiance.r[i] = c.radiance.g[i] = c.radiance.b[i] = 0; });
@@ -32,7 +32,23 @@ void sample_times(Worker& worker, const SampleKeys& keys) {
   const float span = static_cast<float>(scene.time_end - scene.time_start);
   const float inverse = span != 0 ? 1 / span : 0.0f;
   float* time = worker.chunk.time;
+  worker.statistics.time_samples += keys.n;
   for_lanes(keys.n, [&](int i) { time[i] = clamp_to((open + length * time[i] - start) * inverse, 0.0f, 1.0f); });
+}
+
+/// Positions on the lens; its middle for a camera that needs one where depth of field is switched off.
+void sample_lens(Worker& worker, const SampleKeys& keys, CameraRays& out) {
+  const Scene& scene = worker.scene;
+  const bool sampled = scene.plan.live(Effect::DepthOfField);
+  if (!sampled && !scene.camera().needs_lens()) return;
+  float *u = worker.arena.floats(keys.n), *v = worker.arena.floats(keys.n);
+  out.lens_u = u, out.lens_v = v;
+  if (!sampled) {
+    for_lanes(keys.n, [&](int i) { u[i] = v[i] = 0.5f; });
+    return;
+  }
+  scene.sampler().get_2d(keys, worker.layout.lens, u, v);
+  worker.statistics.lens_samples += keys.n;
 }
 
 /// Takes camera-space rays to render space; a moving camera has its own matrix for every ray.
@@ -113,11 +129,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   CameraRays out;
   out.n = n;
   out.film_x = c.film_x, out.film_y = c.film_y;
-  if (scene.plan.needs_lens) {
-    float *u = worker.arena.floats(n), *v = worker.arena.floats(n);
-    scene.sampler().get_2d(keys, worker.layout.lens, u, v);
-    out.lens_u = u, out.lens_v = v;
-  }
+  sample_lens(worker, keys, out);
   out.o = rays.o, out.d = rays.d, out.weight = c.ray_weight;
   out.rx_o = rays.rx_o, out.rx_d = rays.rx_d, out.ry_o = rays.ry_o, out.ry_d = rays.ry_d;
   scene.camera().generate(out);

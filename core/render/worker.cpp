@@ -4,8 +4,10 @@ namespace whit {
 
 DimensionLayout::DimensionLayout(const Scene& scene) {
   int next = 2;
-  if (scene.plan.needs_time) time = next++;
-  if (scene.plan.needs_lens) lens = next, next += 2;
+  // What is on for a test draws numbers that others have, for none of these may change.
+  if (scene.plan.live(Effect::MotionBlur)) time = scene.plan.needed.has(Effect::MotionBlur) ? next++ : 0;
+  if (scene.plan.live(Effect::DepthOfField)) lens = scene.plan.needed.has(Effect::DepthOfField) ? next : 0;
+  if (scene.plan.needed.has(Effect::DepthOfField)) next += 2;
   first_bounce = next;
   per_bounce = scene.light_dimensions + 2;
 }
@@ -22,7 +24,7 @@ void Worker::stop_clock() {
 }
 
 RayList& Worker::level(int depth) {
-  while (levels_.size() <= static_cast<size_t>(depth)) levels_.emplace_back(scene.plan.needs_differentials);
+  while (levels_.size() <= static_cast<size_t>(depth)) levels_.emplace_back(scene.plan.needs_differentials());
   return levels_[static_cast<size_t>(depth)];
 }
 

@@ -1,7 +1,11 @@
 #include "core/scene/alpha.h"
 
+#include <utility>
+
 namespace whit {
 namespace {
+
+thread_local int64_t alpha_tests = 0;
 
 /// Evaluates the two alpha textures at one point, without footprint: bilinear at full resolution, as pbrt.
 class TexturedAlpha final : public AlphaTest {
@@ -10,6 +14,7 @@ class TexturedAlpha final : public AlphaTest {
       : geometry_(geometry), shape_(shape), group_to_render_(group_to_render) {}
 
   bool cut(uint32_t prim, float u, float v, const Vec3f& p, bool shadow_ray) const override {
+    ++alpha_tests;
     thread_local Arena arena;
     ArenaScope scope(arena);
     Vec2f uv(u, v);
@@ -50,11 +55,10 @@ class TexturedAlpha final : public AlphaTest {
 
 }  // namespace
 
+int64_t take_alpha_tests() { return std::exchange(alpha_tests, 0); }
+
 std::unique_ptr<AlphaTest> make_alpha_test(const SceneShape& geometry, const Shape& shape,
                                            const Mat4d& group_to_render) {
-  const bool whole = shape.alpha.is_constant() && shape.alpha.value() != 0 && shape.shadow_alpha.is_constant() &&
-                     shape.shadow_alpha.value() != 0;
-  if (whole) return nullptr;
   return std::make_unique<TexturedAlpha>(geometry, shape, group_to_render);
 }
 

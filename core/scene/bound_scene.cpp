@@ -19,8 +19,12 @@ struct Unknown {
 
 class Binder {
  public:
-  Binder(const SceneDescription& description, const ValuePosition& value_position, Diagnostics& diagnostics)
-      : description_(description), value_position_(value_position), diagnostics_(diagnostics) {
+  Binder(const SceneDescription& description, const ValuePosition& value_position, Diagnostics& diagnostics,
+         bool with_textures)
+      : description_(description),
+        value_position_(value_position),
+        diagnostics_(diagnostics),
+        with_textures_(with_textures) {
     scene_.description = &description;
   }
 
@@ -44,19 +48,20 @@ class Binder {
  private:
   TransformPair transform(int i) const { return description_.transforms[static_cast<size_t>(i)]; }
 
-  BindContext context(const Entity& entity, const std::string& name, std::vector<int>* used_textures) {
+  BindContext context(const Entity& entity, const std::string& name, std::vector<TextureUse>* used_textures) {
     BindContext ctx;
     ctx.diagnostics = &diagnostics_;
     ctx.statement = entity.where;
     ctx.statement_name = name;
     ctx.folder = description_.folder;
     ctx.value_position = value_position_;
-    ctx.float_texture = [this, used_textures](int i) {
-      if (used_textures) used_textures->push_back(i);
+    ctx.with_textures = with_textures_;
+    ctx.float_texture = [this, used_textures](int i, const std::string& parameter) {
+      if (used_textures) used_textures->push_back({parameter, i});
       return std::dynamic_pointer_cast<Texture<float>>(scene_.textures[static_cast<size_t>(i)].plugin);
     };
-    ctx.spectrum_texture = [this, used_textures](int i) {
-      if (used_textures) used_textures->push_back(i);
+    ctx.spectrum_texture = [this, used_textures](int i, const std::string& parameter) {
+      if (used_textures) used_textures->push_back({parameter, i});
       return std::dynamic_pointer_cast<Texture<RGB>>(scene_.textures[static_cast<size_t>(i)].plugin);
     };
     return ctx;
@@ -249,14 +254,15 @@ class Binder {
   const SceneDescription& description_;
   const ValuePosition& value_position_;
   Diagnostics& diagnostics_;
+  const bool with_textures_;
   BoundScene scene_;
 };
 
 }  // namespace
 
 BoundScene bind_scene(const SceneDescription& description, const ValuePosition& value_position,
-                      Diagnostics& diagnostics) {
-  return Binder(description, value_position, diagnostics).run();
+                      Diagnostics& diagnostics, bool with_textures) {
+  return Binder(description, value_position, diagnostics, with_textures).run();
 }
 
 }  // namespace whit

@@ -18,13 +18,19 @@
 
 namespace whit {
 
-/// A plugin made by a statement, and what it refers to: textures (indices into SceneDescription::textures) and
-/// named materials (indices into BoundScene::materials).
+/// A texture that a parameter names.
+struct TextureUse {
+  std::string parameter;
+  int texture = 0;  ///< Index into SceneDescription::textures.
+};
+
+/// A plugin made by a statement, and what it refers to: textures and named materials (indices into
+/// BoundScene::materials).
 template <class T>
 struct Bound {
   std::shared_ptr<T> plugin;  ///< Null when the statement is unusable (reported).
   SourcePos where;
-  std::vector<int> textures;
+  std::vector<TextureUse> textures;
   std::vector<int> materials;
 };
 
@@ -50,8 +56,9 @@ using ValuePosition = std::function<SourcePos(const Parameter&, size_t)>;
 
 /// Makes and binds the plugins of every statement, live or not, so that every mistake is found. Problems go
 /// to `diagnostics`; with errors, the plugins concerned are null and the rest is usable.
-/// `description` must outlive the result (large lists stay in it).
+/// `description` must outlive the result (large lists stay in it). Without textures, parameters keep their defaults
+/// where they name one that is not constant.
 BoundScene bind_scene(const SceneDescription& description, const ValuePosition& value_position,
-                      Diagnostics& diagnostics);
+                      Diagnostics& diagnostics, bool with_textures = true);
 
 }  // namespace whit

@@ -79,6 +79,7 @@ class Builder {
 
   std::unique_ptr<Scene> run() {
     if (!options_complete()) return nullptr;
+    drop_unneeded();
     scene_->accel = std::make_unique<Accel>(
         AccelOptions{.robust = options_.robust_traversal, .second_look = scene_->sampler().is_regular()});
     prepare_sampling();
@@ -96,6 +97,7 @@ class Builder {
     const auto placed = Clock::now();
     const std::string problem = scene_->accel->build();
     if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
+    scene_->sort_keys = static_cast<int>(keys_.size());
     scene_->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
                              seconds(placed, Clock::now())};
     if (diagnostics_.has_errors() && !options_.keep_going) return nullptr;
@@ -109,11 +111,34 @@ class Builder {
   }
 
   const SceneDescription& description() const { return *scene_->bound.description; }
-  TransformPair transform(int i) const { return description().transforms[static_cast<size_t>(i)]; }
+  TransformPair transform(int i) const { return pair_of(description().transforms[static_cast<size_t>(i)]); }
+  /// A transform as the plan has it move: without motion blur it stands as it does when the shutter opens.
+  TransformPair pair_of(const TransformPair& given) const {
+    if (!given.animated() || !scene_->plan.off.has(Effect::MotionBlur)) return given;
+    const double span = description().time_end - description().time_start;
+    const double open = static_cast<double>(scene_->camera().shutter_open) - description().time_start;
+    const Mat4d still = interpolate(given, span != 0 ? std::clamp(open / span, 0.0, 1.0) : 0.0);
+    return {still, still};
+  }
 
   bool options_complete() const {
     const BoundScene& b = scene_->bound;
     return b.camera.plugin && b.film.plugin && b.filter.plugin && b.sampler.plugin && b.integrator.plugin;
+  }
+
+  /// Frees the plugins of statements that the picture does not need. They were made to check their parameters.
+  void drop_unneeded() {
+    const auto drop = [](auto& all, const std::vector<uint8_t>& live) {
+      for (size_t i = 0; i < all.size(); ++i) {
+        if (!live[i]) all[i].plugin.reset();
+      }
+    };
+    drop(scene_->bound.shapes, scene_->plan.shape_live);
+    drop(scene_->bound.textures, scene_->plan.texture_live);
+    drop(scene_->bound.lights, scene_->plan.light_live);
+    for (size_t i = 1; i < scene_->bound.materials.size(); ++i) {  // The first stands in for what is wrong.
+      if (!scene_->plan.material_live[i]) scene_->bound.materials[i].plugin.reset();
+    }
   }
 
   PrepareContext context(SourcePos where) { return context(where, diagnostics_); }
@@ -331,8 +356,9 @@ class Builder {
     std::vector<std::unique_ptr<AlphaTest>> tests(shapes.size());
     std::vector<bool> has_alpha(shapes.size());
     for (size_t i = 0; i < shapes.size(); ++i) {
+      has_alpha[i] = plugins_[first + i]->is_cut_out() && scene_->plan.live(Effect::Alpha);
+      if (!has_alpha[i] && !scene_->plan.everything_on) continue;
       tests[i] = make_alpha_test(shapes[i], *plugins_[first + i], group.space.to_world() * scene_->space.from_world());
-      has_alpha[i] = tests[i] != nullptr;
     }
     Coincidences found = find_coincidences(shapes, has_alpha);
     for (auto& [cut_shape, cut] : found.cuts) {
@@ -385,7 +411,7 @@ class Builder {
   }
 
   int emission_of(const ShapeDescription& d, const SceneShape& shape) {
-    if (d.area_light < 0) return -1;
+    if (d.area_light < 0 || !scene_->plan.needed.has(Effect::AreaLights)) return -1;
     const auto& light = scene_->bound.area_lights[static_cast<size_t>(d.area_light)].plugin;
     if (!light || is_black(light->radiance())) return -1;
     // A curve always faces the ray, so it has no back that could be dark.
@@ -458,7 +484,7 @@ class Builder {
     for (size_t i = 0; i < scene_->bound.materials.size(); ++i) {
       auto& material = scene_->bound.materials[i];
       if (!material.plugin) {
-        // Its statement was wrong, which has been reported; --keep-going shows the default material.
+        // Nobody wears it. Or its statement was wrong, which has been reported; --keep-going shows the default material.
         material.plugin = scene_->bound.materials[0].plugin;
       } else if (scene_->plan.material_live[i]) {
         material.plugin->prepare(context(material.where));
@@ -474,11 +500,11 @@ class Builder {
       SceneLight entry;
       entry.light = light.plugin.get();
       entry.is_delta = light.plugin->is_delta();
-      add_light(entry);
+      if (scene_->plan.direct_light) add_light(entry);
       if (light.plugin->is_environment()) scene_->environments.push_back(light.plugin.get());
     }
     for (const auto& [index, in_world] : lit_shapes_) {
-      if (in_world) add_emitters(index);
+      if (in_world && scene_->plan.direct_light) add_emitters(index);
     }
   }
 

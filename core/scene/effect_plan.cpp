@@ -1,11 +1,23 @@
 #include "core/scene/effect_plan.h"
 
+#include <algorithm>
+
 namespace whit {
 namespace {
 
+/// Whether a texture has the same value everywhere, so that nobody evaluates it: parameters hold the value.
+bool is_folded(const Plugin& texture) {
+  if (const auto* t = dynamic_cast<const Texture<float>*>(&texture)) return t->constant().has_value();
+  const auto* t = dynamic_cast<const Texture<RGB>*>(&texture);
+  return t && t->constant().has_value();
+}
+
 class Planner {
  public:
-  explicit Planner(const BoundScene& scene) : scene_(scene), description_(*scene.description) {}
+  Planner(const BoundScene& scene, const PlanOptions& options) : scene_(scene), description_(*scene.description) {
+    plan_.off = options.off;
+    plan_.everything_on = options.everything_on;
+  }
 
   EffectPlan run() {
     plan_.object_live.assign(description_.objects.size(), 0);
@@ -15,45 +27,65 @@ class Planner {
     plan_.material_live.assign(scene_.materials.size(), 0);
     place_instances();
     for (size_t i = 0; i < scene_.shapes.size(); ++i) visit_shape(i);
+    scatters_ = wants(Effect::Diffuse) || wants(Effect::Glossy);
     for (size_t i = 0; i < scene_.lights.size(); ++i) visit_light(i);
+    visit_emitters();
     visit_camera();
-    if (!description_.media.empty() || !description_.media_uses.empty()) {
-      plan_.ignored.push_back("participating media");
-    }
-    plan_.needs_differentials = plan_.live(Effect::TextureFiltering) || plan_.live(Effect::Bump);
-    plan_.needs_time = plan_.live(Effect::MotionBlur);
-    plan_.needs_lens = plan_.live(Effect::DepthOfField);
+    forgo_bounces();
+    note_ignored();
+    plan_.needed = plan_.called_for - plan_.off - forgone_;
+    for_effects(plan_.called_for, [&](Effect e) {
+      if (plan_.off.has(e)) use(e).why_off = "switched off";
+      if (!compiled_in(e)) use(e).why_off = "not in this build";
+    });
     return std::move(plan_);
   }
 
  private:
-  void call_for(EffectSet effects, SourcePos where, const std::string& what) {
-    for (unsigned e = 0; e < static_cast<unsigned>(Effect::kCount); ++e) {
-      const auto effect = static_cast<Effect>(e);
-      if (effects.has(effect)) plan_.causes.push_back({effect, where, what});
-    }
-    plan_.effects |= effects;
+  EffectUse& use(Effect e) { return plan_.uses[static_cast<size_t>(e)]; }
+
+  void call_for(const EffectSet& effects, SourcePos where, const std::string& what) {
+    for_effects(effects, [&](Effect e) {
+      if (use(e).count++ < EffectUse::kNamed) use(e).causes.push_back({where, what});
+    });
+    plan_.called_for |= effects;
   }
+  bool is_off(Effect e) const { return plan_.off.has(e); }
+  bool wants(Effect e) const { return plan_.called_for.has(e) && !is_off(e); }
   bool animated(int transform) const { return description_.transforms[static_cast<size_t>(transform)].animated(); }
+  bool moves(int transform) const { return animated(transform) && !is_off(Effect::MotionBlur); }
 
   void place_instances() {
+    std::vector<uint8_t> placed(description_.objects.size());
     for (const auto& instance : description_.instances) {
       const auto object = static_cast<size_t>(instance.object);
-      if (!plan_.object_live[object]) call_for({Effect::Instancing}, instance.where, description_.objects[object].name);
-      plan_.object_live[object] = 1;
+      if (!placed[object]) call_for({Effect::Instancing}, instance.where, description_.objects[object].name);
+      placed[object] = 1;
       if (animated(instance.transform)) call_for({Effect::MotionBlur}, instance.where, "moving instance");
     }
+    if (!is_off(Effect::Instancing)) plan_.object_live = std::move(placed);
   }
 
-  void visit_textures(const std::vector<int>& textures) {
-    for (int t : textures) {
-      const auto i = static_cast<size_t>(t);
-      if (plan_.texture_live[i]) continue;
-      plan_.texture_live[i] = 1;
-      visit_textures(scene_.textures[i].textures);
-      if (scene_.textures[i].plugin) {
-        call_for(scene_.textures[i].plugin->effects(), scene_.textures[i].where, description_.textures[i].plugin);
-      }
+  /// A texture and what it is made of. Those that are evaluated for rays, as alpha, are not filtered.
+  void visit_texture(int index, bool filtered) {
+    const auto& texture = scene_.textures[static_cast<size_t>(index)];
+    uint8_t& live = plan_.texture_live[static_cast<size_t>(index)];
+    constexpr uint8_t kSeen = 1, kFiltered = 2;
+    const uint8_t now = filtered ? kSeen | kFiltered : kSeen;
+    if (!texture.plugin || (live & now) == now || is_folded(*texture.plugin)) return;
+    EffectSet effects = texture.plugin->effects() | EffectSet{Effect::Textures};
+    if (!filtered) effects.remove(Effect::TextureFiltering);
+    if (is_off(Effect::Textures)) effects = {Effect::Textures};
+    if (live & kSeen) effects.remove(Effect::Textures);
+    call_for(effects, texture.where, description_.textures[static_cast<size_t>(index)].plugin);
+    if (is_off(Effect::Textures)) return;
+    live |= now;
+    visit_textures(*texture.plugin, texture.textures, filtered);
+  }
+
+  void visit_textures(const Plugin& user, const std::vector<TextureUse>& textures, bool filtered) {
+    for (const TextureUse& t : textures) {
+      if (user.reads(t.parameter)) visit_texture(t.texture, filtered);
     }
   }
 
@@ -61,22 +93,39 @@ class Planner {
     const ShapeDescription& d = description_.shapes[i];
     const auto& shape = scene_.shapes[i];
     if (!shape.plugin || (d.object >= 0 && !plan_.object_live[static_cast<size_t>(d.object)])) return;
-    const bool emits = d.area_light >= 0 && scene_.area_lights[static_cast<size_t>(d.area_light)].plugin;
+    const auto material = static_cast<size_t>(scene_.shape_material[i]);
+    const bool passes = scene_.materials[material].plugin && scene_.materials[material].plugin->is_interface();
+    if (passes && is_off(Effect::Interfaces)) {
+      call_for({Effect::Interfaces}, scene_.materials[material].where, "none");
+      return;
+    }
+    const bool emits = emits_light(d);
     // A constant alpha of 0 is a shape that is not there, or that lights unseen.
-    const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0;
-    if (unseen && !(emits && d.object < 0 && !animated(d.transform))) return;
+    const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0 && !is_off(Effect::Alpha);
+    const bool lights = emits && !is_off(Effect::AreaLights) && d.object < 0 && !moves(d.transform);
+    if (unseen && !lights) return;
     plan_.shape_live[i] = 1;
     call_for(shape.plugin->effects(), d.where, d.plugin);
-    const bool cut = unseen || !shape.plugin->alpha.is_constant() || !shape.plugin->shadow_alpha.is_constant() ||
-                     shape.plugin->shadow_alpha.value() == 0;
-    if (cut) call_for({Effect::AlphaMask}, d.where, d.plugin);
-    visit_textures(shape.textures);
+    if (shape.plugin->is_cut_out()) call_for({Effect::Alpha}, d.where, d.plugin);
+    if (!is_off(Effect::Alpha)) visit_textures(*shape.plugin, shape.textures, false);
     if (animated(d.transform)) call_for({Effect::MotionBlur}, d.where, "moving " + d.plugin);
-    if (emits) {
-      call_for({Effect::AreaLight}, description_.area_lights[static_cast<size_t>(d.area_light)].where,
-               description_.area_lights[static_cast<size_t>(d.area_light)].plugin);
-    }
+    if (emits) visit_emission(i, lights);
     if (!unseen) visit_material(scene_.shape_material[i]);
+  }
+
+  bool emits_light(const ShapeDescription& d) const {
+    if (d.area_light < 0) return false;
+    const auto& light = scene_.area_lights[static_cast<size_t>(d.area_light)].plugin;
+    return light && !is_black(light->radiance());
+  }
+
+  /// A surface that emits. `lights`: it stands in the world and does not move, so that it also lights others.
+  void visit_emission(size_t i, bool lights) {
+    const ShapeDescription& d = description_.shapes[i];
+    const Entity& light = description_.area_lights[static_cast<size_t>(d.area_light)];
+    call_for({Effect::AreaLights}, light.where, light.plugin);
+    const bool is_curve = dynamic_cast<const CurveShape*>(scene_.shapes[i].plugin.get()) != nullptr;
+    if (lights && !is_curve) emitters_.push_back(&light);
   }
 
   void visit_material(int index) {
@@ -85,33 +134,81 @@ class Planner {
     plan_.material_live[m] = 1;
     const auto& material = scene_.materials[m];
     if (!material.plugin) return;
-    call_for(material.plugin->effects(), material.where, "material");
-    visit_textures(material.textures);
+    const std::string what = m < description_.materials.size() ? description_.materials[m].plugin : "material";
+    call_for(material.plugin->effects(), material.where, what);
     if (!material.plugin->bump.is_constant()) call_for({Effect::Bump}, material.where, "bumpmap");
+    for (const TextureUse& t : material.textures) {
+      const bool read = t.parameter == "bumpmap" ? !is_off(Effect::Bump) : material.plugin->reads(t.parameter);
+      if (read) visit_texture(t.texture, true);
+    }
     for (const int member : material.materials) visit_material(member);
   }
 
+  /// Lights at infinity are also seen. All others are there for surfaces that scatter.
   void visit_light(size_t i) {
     const auto& light = scene_.lights[i];
     if (!light.plugin || light.plugin->is_black()) return;
-    plan_.light_live[i] = 1;
-    call_for(light.plugin->effects(), light.where, description_.lights[i].plugin);
+    const std::string& name = description_.lights[i].plugin;
+    call_for(light.plugin->effects(), light.where, name);
+    if (!(light.plugin->effects() - plan_.off).empty() && (scatters_ || light.plugin->is_environment())) {
+      plan_.light_live[i] = 1;
+      if (scatters_) light_up(light.where, name);
+    }
+  }
+
+  void visit_emitters() {
+    for (const Entity* light : emitters_) {
+      if (scatters_) light_up(light->where, light->plugin);
+    }
+    if (!scatters_) forgo(Effect::DeltaLights, "no surface scatters their light");
+  }
+
+  void light_up(SourcePos where, const std::string& what) {
+    plan_.direct_light = true;
+    call_for({Effect::Shadows}, where, what);
   }
 
   void visit_camera() {
     if (!scene_.camera.plugin) return;
     call_for(scene_.camera.plugin->effects(), scene_.camera.where, "camera");
-    if (scene_.camera.plugin->needs_lens()) call_for({Effect::DepthOfField}, scene_.camera.where, "lens");
     if (animated(description_.camera_transform)) call_for({Effect::MotionBlur}, scene_.camera.where, "moving camera");
+  }
+
+  void forgo(Effect e, const std::string& why) {
+    forgone_.add(e);
+    if (plan_.called_for.has(e)) use(e).why_off = why;
+  }
+
+  /// At a maxdepth of 1 nothing is seen in mirrors.
+  void forgo_bounces() {
+    if (!scene_.integrator.plugin || scene_.integrator.plugin->max_depth() > 1) return;
+    for (const Effect e : {Effect::Reflection, Effect::Refraction}) forgo(e, "\"maxdepth\" allows no bounce");
+  }
+
+  void note_ignored() {
+    const SceneDescription& d = description_;
+    if (!d.media.empty() || !d.media_uses.empty()) {
+      plan_.ignored.push_back(
+          {"participating media", d.media_uses.empty() ? d.media.front().where : d.media_uses.front()});
+    }
+    if (!d.integrator.plugin.empty() && d.integrator.plugin != "whitted") {
+      plan_.ignored.push_back({"integrator \"" + d.integrator.plugin + '"', d.integrator.where});
+    }
+    if (!d.accelerator.plugin.empty()) {
+      plan_.ignored.push_back({"accelerator \"" + d.accelerator.plugin + '"', d.accelerator.where});
+    }
   }
 
   const BoundScene& scene_;
   const SceneDescription& description_;
   EffectPlan plan_;
+  EffectSet forgone_;  ///< Called for, but without consequence.
+  std::vector<const Entity*> emitters_;
+  bool scatters_ = false;
 };
 
 }  // namespace
 
-EffectPlan plan_effects(const BoundScene& scene) { return Planner(scene).run(); }
+EffectPlan plan_effects(const BoundScene& scene, const PlanOptions& options) { return Planner(scene, options).run(); }
 
 }  // namespace whit

@@ -1,39 +1,65 @@
 // The effect plan: what a scene calls for, who called for it, and what can be left alone.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
-#include "core/plugin/plugin.h"
+#include "core/plugin/effect.h"
 #include "core/scene/bound_scene.h"
 
 namespace whit {
 
-/// Why an effect is live: the statement that called for it.
+/// A statement that called for an effect.
 struct EffectCause {
-  Effect effect;
   SourcePos where;
   std::string what;  ///< "mirror", "skybox", ...
 };
 
+/// Who called for an effect, and why it is off all the same.
+struct EffectUse {
+  static constexpr size_t kNamed = 3;
+  size_t count = 0;                 ///< Of the statements that called for it.
+  std::vector<EffectCause> causes;  ///< The first few of them, in file order.
+  std::string why_off;              ///< Of an effect that is called for and off.
+};
+
+/// Something a scene file asks for and whit accepts, but does not do.
+struct Ignored {
+  std::string what;  ///< "participating media".
+  SourcePos where;   ///< The first statement that asks for it.
+};
+
+struct PlanOptions {
+  EffectSet off{};             ///< Switched off by hand.
+  bool everything_on = false;  ///< All stages run, for tests: the picture must not change by that.
+};
+
 /// Computed from the bound scene by reachability, before anything heavy is read or built.
 struct EffectPlan {
-  EffectSet effects;
-  std::vector<EffectCause> causes;  ///< Every statement that called for an effect, in file order.
+  EffectSet called_for;        ///< By what is visible.
+  EffectSet needed;            ///< The picture depends on these alone: called for, and not switched off.
+  EffectSet off;               ///< PlanOptions::off.
+  bool everything_on = false;  ///< PlanOptions::everything_on.
+  std::array<EffectUse, kEffects> uses;
 
   // Which statements of the SceneDescription the picture needs.
   std::vector<uint8_t> object_live, shape_live, texture_live, light_live;
   std::vector<uint8_t> material_live;  ///< Index of BoundScene::materials.
-  std::vector<std::string> ignored;    ///< Media, other integrators: accepted, not simulated.
+  bool direct_light = false;           ///< A surface scatters, and a light can be sampled: there is direct light.
+  std::vector<Ignored> ignored;
 
-  bool needs_differentials = false;  ///< A filtered texture or a bump map is visible.
-  bool needs_time = false;           ///< Something moves.
-  bool needs_lens = false;           ///< The camera's lens has a radius.
-
-  bool live(Effect e) const { return effects.has(e); }
+  /// Whether the stages of an effect run. Known at compile time where the build lacks the effect.
+  bool live(Effect e) const { return compiled_in(e) && (everything_on || needed.has(e)); }
+  bool needs_differentials() const {
+    return live(Effect::TextureFiltering) || (live(Effect::Bump) && !off.has(Effect::TextureFiltering));
+  }
+  /// The effects whose lobes surfaces have.
+  EffectSet lobes() const { return (everything_on ? EffectSet::all() : needed) - off; }
+  const EffectUse& use(Effect e) const { return uses[static_cast<size_t>(e)]; }
 };
 
 /// Plans a bound scene. Cheap: looks at parameters only.
-EffectPlan plan_effects(const BoundScene& scene);
+EffectPlan plan_effects(const BoundScene& scene, const PlanOptions& options = {});
 
 }  // namespace whit

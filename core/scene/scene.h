@@ -115,6 +115,7 @@ struct Scene {
   double time_start = 0, time_end = 1;     ///< Times of the first and last key.
   int light_dimensions = 0;                ///< Sample dimensions that the lights of one bounce use.
   int samples_per_pixel = 1;
+  int sort_keys = 0;  ///< Number of different SceneShape::sort_key.
   std::unique_ptr<Accel> accel;
   BuildSeconds build_seconds;
 

@@ -27,11 +27,8 @@ struct Disney : Material {
   bool thin = false;
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, color, scatterdistance, metallic, eta, roughness, speculartint, anisotropic, sheen,
-                             sheentint, clearcoat, clearcoatgloss, spectrans, flatness, difftrans);
-    e.add(Effect::Glossy);
-    if (scatters_inside()) e.add(Effect::Refraction);
-    return e;
+    const EffectSet surface{Effect::Diffuse, Effect::Glossy};
+    return scatters_inside() ? surface | EffectSet{Effect::Refraction} : surface;
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

@@ -21,11 +21,7 @@ struct Fourier : Material {
       diagnostics.error(statement, "fourier needs a \"bsdffile\"", "name a .bsdf file of layerlab's");
   }
 
-  EffectSet effects() const override {
-    EffectSet e = effects_of(*this);
-    e.add(Effect::Glossy);
-    return e;
-  }
+  EffectSet effects() const override { return {Effect::Glossy}; }
 
   bool prepare(const PrepareContext& context) override {
     if (bsdffile.empty()) return true;  // reported by check()

@@ -37,15 +37,7 @@ struct Hair : Material {
     if (pheomelanin) ignored("pheomelanin");
   }
 
-  EffectSet effects() const override {
-    EffectSet e = effects_of(*this, eta, beta_m, beta_n, alpha);
-    const auto add = [&e](const auto& texture) {
-      if (texture) e |= texture->effects();
-    };
-    add(sigma_a), add(color), add(eumelanin), add(pheomelanin);
-    e.add(Effect::Glossy);
-    return e;
-  }
+  EffectSet effects() const override { return {Effect::Glossy}; }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     float *const longitudinal = beta_m(s), *const azimuthal = beta_n(s), *const tilt = alpha(s);

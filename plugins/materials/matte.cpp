@@ -11,9 +11,10 @@ struct Matte : Material {
   Tex<RGB> Kd;
   Tex<float> sigma;
 
-  EffectSet effects() const override { return effects_of(*this, Kd, sigma); }
+  EffectSet effects() const override { return effect_unless_black(Effect::Diffuse, Kd); }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (is_black(Kd)) return;
     Lobe lobe;
     lobe.weight = weights(Kd, s);
     if (!sigma.is_constant() || sigma.value() > 0) set_oren_nayar(s, lobe);

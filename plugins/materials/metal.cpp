@@ -21,10 +21,9 @@ struct Metal : Material {
   const Tex<float>& along_u() const { return uroughness ? *uroughness : roughness; }
   const Tex<float>& along_v() const { return vroughness ? *vroughness : roughness; }
 
-  EffectSet effects() const override {
-    EffectSet e = effects_of(*this, eta, k, along_u(), along_v());
-    e.add(Effect::Glossy);
-    return e;
+  EffectSet effects() const override { return {Effect::Glossy}; }
+  bool reads(std::string_view parameter) const override {
+    return parameter != "roughness" || !uroughness || !vroughness;
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

@@ -8,11 +8,7 @@ namespace {
 struct Mirror : Material {
   Tex<RGB> Kr;
 
-  EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kr);
-    if (!is_black(Kr)) e.add(Effect::Mirror);
-    return e;
-  }
+  EffectSet effects() const override { return effect_unless_black(Effect::Reflection, Kr); }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (is_black(Kr)) return;

@@ -19,7 +19,7 @@ struct Mix : Material {
   }
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, amount);
+    EffectSet e;
     for (const auto& member : {namedmaterial1, namedmaterial2})
       if (member) e |= member->effects();
     return e;

@@ -11,10 +11,7 @@ struct PerfectGlass : Material {
   Tex<float> index;
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kr, Kt, index);
-    if (!is_black(Kr)) e.add(Effect::Mirror);
-    if (!is_black(Kt)) e.add(Effect::Refraction);
-    return e;
+    return effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

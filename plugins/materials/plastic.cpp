@@ -15,10 +15,10 @@ struct Plastic : Material {
   bool remaproughness = true;
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kd, Ks, roughness);
-    if (!is_black(Ks)) e.add(Effect::Glossy);
-    return e;
+    return effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks);
   }
+
+  bool reads(std::string_view parameter) const override { return parameter != "roughness" || !is_black(Ks); }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (!is_black(Kd)) {

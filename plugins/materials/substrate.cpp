@@ -13,11 +13,7 @@ struct Substrate : Material {
 
   bool is_nothing() const { return is_black(Kd) && is_black(Ks); }
 
-  EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kd, Ks, uroughness, vroughness);
-    if (!is_nothing()) e.add(Effect::Glossy);
-    return e;
-  }
+  EffectSet effects() const override { return is_nothing() ? EffectSet{} : EffectSet{Effect::Glossy}; }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (is_nothing()) return;

@@ -72,6 +72,7 @@ struct Subsurface : DielectricSurface {
   }
 
   EffectSet effects() const override { return surface_effects(); }
+  bool reads(std::string_view parameter) const override { return parameter != "sigma_a" && parameter != "sigma_s"; }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override { add_surface(s, filled(s, eta), out); }
 };

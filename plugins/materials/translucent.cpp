@@ -16,9 +16,8 @@ struct Translucent : Material {
   bool is_nothing() const { return is_black(reflect) && is_black(transmit); }
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kd, Ks, reflect, transmit, roughness);
-    if (!is_black(Ks) && !is_nothing()) e.add(Effect::Glossy);
-    return e;
+    if (is_nothing()) return {};
+    return effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks);
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

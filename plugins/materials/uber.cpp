@@ -25,12 +25,15 @@ struct Uber : Material {
   }
 
   EffectSet effects() const override {
-    EffectSet e = effects_of(*this, Kd, Ks, Kr, Kt, opacity, along_u(), along_v(), relative_index());
-    const bool clear = is_black(opacity);
-    if (!clear && !is_black(Ks)) e.add(Effect::Glossy);
-    if (!clear && !is_black(Kr)) e.add(Effect::Mirror);
-    if (!is_opaque() || !is_black(Kt)) e.add(Effect::Refraction);
-    return e;
+    const EffectSet passage = is_opaque() ? EffectSet{} : EffectSet{Effect::Refraction};
+    if (is_black(opacity)) return passage;
+    return passage | effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks) |
+           effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
+  }
+
+  bool reads(std::string_view parameter) const override {
+    if (parameter == "index") return !eta;
+    return parameter != "roughness" || !uroughness;
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

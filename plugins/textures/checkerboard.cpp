@@ -46,9 +46,7 @@ class Checkerboard : public Texture2D<T> {
     return std::nullopt;
   }
   EffectSet effects() const override {
-    EffectSet e = tex1.effects() |= tex2.effects();
-    if (dimension == 2 && aamode.index == 0) e.add(Effect::TextureFiltering);
-    return e;
+    return dimension == 2 && aamode.index == 0 ? EffectSet{Effect::TextureFiltering} : EffectSet{};
   }
   bool prepare(const PrepareContext& ctx) override {
     map_3d_ = mapping_3d(this->texture_to_world, ctx.space);

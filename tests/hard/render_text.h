@@ -16,8 +16,8 @@ struct Rendered {
   Diagnostics warnings;  ///< Where they are allowed.
 
   explicit Rendered(const std::string& text, const BuildOptions& build = {}, const RenderOptions& options = {},
-                    Planned::Warnings mode = Planned::Warnings::Failures) {
-    const BuiltScene built(text, build, mode);
+                    Planned::Warnings mode = Planned::Warnings::Failures, const PlanOptions& plan = {}) {
+    const BuiltScene built(text, build, mode, plan);
     result = render(*built.scene, options);
     warnings = built.warnings;
     EXPECT_EQ(result.statistics.invalid_samples, 0)

@@ -81,8 +81,12 @@ class Binding : public ::testing::Test {
     ctx.statement_name = "everything";
     ctx.folder = test::temp_folder();
     ctx.value_position = [](const Parameter& p, size_t i) { return SourcePos{0, p.values_at.offset + i}; };
-    ctx.float_texture = [](int i) { return i == 0 ? std::make_shared<ConstantTexture<float>>() : nullptr; };
-    ctx.spectrum_texture = [](int i) { return i == 0 ? std::make_shared<ConstantTexture<RGB>>() : nullptr; };
+    ctx.float_texture = [](int i, const std::string&) {
+      return i == 0 ? std::make_shared<ConstantTexture<float>>() : nullptr;
+    };
+    ctx.spectrum_texture = [](int i, const std::string&) {
+      return i == 0 ? std::make_shared<ConstantTexture<RGB>>() : nullptr;
+    };
   }
   bool bind(Parameter p) { return bind(ParameterList{std::move(p)}); }
   bool bind(ParameterList list) {

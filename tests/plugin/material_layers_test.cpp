@@ -38,7 +38,7 @@ TEST(Subsurface, IsItsBoundary) {
     ShadingPoints points(1);
     const auto smooth = make_plugin<Material>("material", name);
     EXPECT_EQ(types_of(*smooth.plugin, points), (Types{LobeType::SpecularReflection, LobeType::SpecularTransmission}));
-    EXPECT_TRUE(smooth->effects().has(Effect::Mirror) && smooth->effects().has(Effect::Refraction));
+    EXPECT_TRUE(smooth->effects().has(Effect::Reflection) && smooth->effects().has(Effect::Refraction));
     LobeSet set(points.arena);
     smooth->lobes(points.s, set);
     EXPECT_EQ(set.eta[0], 1.33f);

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <map>
+#include <optional>
+#include <random>
 #include <set>
 
 #include "core/batch/lobe_eval.h"
@@ -96,6 +99,39 @@ TEST(EveryMaterial, ReflectsAtMostWhatArrives) {
   }
 }
 
+/// Some value of a parameter, so that lobes come and go: black or not, smooth or rough, thin or solid.
+std::optional<Parameter> any_value(const ParamSpec& spec, std::mt19937& random) {
+  const auto takes = [&](ParamType type) { return std::count(spec.accepts.begin(), spec.accepts.end(), type) > 0; };
+  const double values[] = {0, 0.3, 1}, value = std::max(values[random() % 3], spec.range.min);
+  if (random() % 3 == 0) return std::nullopt;
+  if (takes(ParamType::Bool)) return test::boolean(spec.name.c_str(), random() % 2 == 0);
+  if (takes(ParamType::Rgb)) return test::rgb(spec.name.c_str(), value, value, value);
+  if (takes(ParamType::Float)) return test::floats(spec.name.c_str(), {value});
+  return std::nullopt;
+}
+
+TEST(EveryMaterial, DeclaresTheEffectsOfAllItsLobes) {
+  // The renderer drops lobes of effects that no material of the scene declares.
+  std::mt19937 random(7);
+  for (const PluginInfo* info : list_plugins("material")) {
+    for (int i = 0; i < 300; ++i) {
+      ParameterList list;
+      for (const ParamSpec& spec : info->params) {
+        if (auto p = any_value(spec, random)) list.push_back(std::move(*p));
+      }
+      const auto made = make_plugin<Material>("material", info->name.c_str(), std::move(list));
+      if (!made.plugin) continue;  // what needs a file
+      ShadingPoints points(1);
+      LobeSet set(points.arena);
+      made->lobes(points.s, set);
+      for (int l = 0; l < set.count; ++l) {
+        const Effect effect = effect_of(set.lobes[l].type);
+        EXPECT_TRUE(made->effects().has(effect)) << info->name << ": " << effect_name(effect);
+      }
+    }
+  }
+}
+
 TEST(EveryMaterial, IsDocumentedAndItsDefaultsAreInRange) {
   for (const PluginInfo* info : list_plugins("material")) {
     EXPECT_FALSE(info->doc.empty()) << info->name;
@@ -139,7 +175,7 @@ TEST(Glass, LobesAndEffectsFollowItsParameters) {
   const LobeSet set = lobes_of(*smooth.plugin, points.s);
   EXPECT_EQ(set.count, 2);
   EXPECT_EQ(set.eta[0], 1.7f) << "eta overrides index";
-  EXPECT_TRUE(smooth->effects().has(Effect::Mirror) && smooth->effects().has(Effect::Refraction));
+  EXPECT_TRUE(smooth->effects().has(Effect::Reflection) && smooth->effects().has(Effect::Refraction));
   EXPECT_FALSE(smooth->effects().has(Effect::Glossy));
 
   const auto rough = make_plugin<Material>("material", "glass", {test::floats("uroughness", {0.2})});
@@ -148,11 +184,11 @@ TEST(Glass, LobesAndEffectsFollowItsParameters) {
   EXPECT_EQ(r.lobes[1].type, LobeType::MicrofacetTransmission);
   EXPECT_TRUE(needs_frame(r));
   EXPECT_TRUE(rough->effects().has(Effect::Glossy));
-  EXPECT_FALSE(rough->effects().has(Effect::Mirror));
+  EXPECT_FALSE(rough->effects().has(Effect::Reflection));
 
   const auto clear = make_plugin<Material>("material", "glass", {test::rgb("Kr", 0, 0, 0)});
   EXPECT_EQ(lobes_of(*clear.plugin, points.s).count, 1);
-  EXPECT_FALSE(clear->effects().has(Effect::Mirror));
+  EXPECT_FALSE(clear->effects().has(Effect::Reflection));
 
   EXPECT_TRUE(make_plugin<Material>("material", "glass", {test::floats("eta", {0})}).diagnostics.has_errors());
 }
@@ -243,7 +279,7 @@ TEST(Uber, OpacityLetsRaysPassAndScalesTheRest) {
   EXPECT_EQ(t.lobes[3].weight[0], RGB(0.125f, 1, 0.5f)) << "opacity is clamped only from below";
   EXPECT_EQ(t.lobes[4].eta[0], 1.5f);
   EXPECT_EQ(t.eta[0], 1.0f) << "the index for ray differentials";
-  EXPECT_TRUE(thin->effects().has(Effect::Mirror) && thin->effects().has(Effect::Refraction));
+  EXPECT_TRUE(thin->effects().has(Effect::Reflection) && thin->effects().has(Effect::Refraction));
 }
 
 TEST(Uber, RoughnessFallsBackFromVToU) {
@@ -328,7 +364,7 @@ TEST(None, IsAnInterfaceUnderBothNames) {
   EXPECT_EQ(find_plugin("material", ""), find_plugin("material", "none"));
   const auto m = make_plugin<Material>("material", "none");
   EXPECT_TRUE(m->is_interface());
-  EXPECT_TRUE(m->effects().has(Effect::Interface));
+  EXPECT_TRUE(m->effects().has(Effect::Interfaces));
 }
 
 }  // namespace

@@ -115,8 +115,8 @@ TEST(Lights, EffectsAndBlackness) {
   for (const char* name : {"point", "distant", "infinite", "skybox"}) {
     const auto l = make_plugin<Light>("light", name);
     EXPECT_FALSE(l->is_black()) << name;
-    EXPECT_EQ(l->is_delta(), l->effects().has(Effect::DeltaLight)) << name;
-    EXPECT_EQ(l->is_environment(), l->effects().has(Effect::EnvironmentLight)) << name;
+    EXPECT_EQ(l->is_delta(), l->effects().has(Effect::DeltaLights)) << name;
+    EXPECT_EQ(l->is_environment(), l->effects().has(Effect::EnvironmentLights)) << name;
     EXPECT_NE(l->is_delta(), l->is_environment()) << name;
     EXPECT_TRUE(make_plugin<Light>("light", name, {rgb("scale", 0, 0, 0)})->is_black()) << name;
   }
@@ -126,7 +126,7 @@ TEST(Lights, EffectsAndBlackness) {
   ASSERT_TRUE(area.silent());
   EXPECT_EQ(area->radiance(), RGB(2, 4, 6));
   EXPECT_TRUE(area->two_sided());
-  EXPECT_TRUE(area->effects().has(Effect::AreaLight));
+  EXPECT_TRUE(area->effects().has(Effect::AreaLights));
 }
 
 // --- Lights all around.

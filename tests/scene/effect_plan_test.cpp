@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/scene/scene_text.h"
@@ -13,68 +14,183 @@ namespace {
 
 using test::Planned;
 
-/// A scene of options and a world; the matte sphere in it calls for nothing.
+/// A scene of options and a world; the matte sphere in it scatters.
 std::string scene(const std::string& world, const std::string& options = "") {
   return options + "WorldBegin\nShape \"sphere\"\n" + world + "\nWorldEnd\n";
 }
 
-std::set<std::string> effects_of(const std::string& text) {
-  const Planned planned(text);
-  std::set<std::string> on;
-  for (unsigned e = 0; e < static_cast<unsigned>(Effect::kCount); ++e) {
-    if (planned.plan.live(static_cast<Effect>(e))) on.insert(effect_name(static_cast<Effect>(e)));
-  }
-  // Every live effect has a cause, every cause a live effect.
-  std::set<std::string> caused;
-  for (const EffectCause& cause : planned.plan.causes) caused.insert(effect_name(cause.effect));
-  EXPECT_EQ(on, caused);
-  return on;
+using Effects = std::set<std::string>;
+
+Effects names_of(const EffectSet& set) {
+  Effects names;
+  for_effects(set, [&](Effect e) { names.insert(effect_name(e)); });
+  return names;
 }
 
-using Effects = std::set<std::string>;
+/// What a scene needs beyond diffuse surfaces.
+Effects effects_of(const std::string& text, const PlanOptions& options = {}) {
+  const Planned planned(text, Planned::Warnings::Failures, options);
+  // Every effect that is called for has a cause, every cause an effect.
+  for_effects(EffectSet::all(), [&](Effect e) {
+    EXPECT_EQ(planned.plan.called_for.has(e), planned.plan.use(e).count > 0) << effect_name(e);
+    EXPECT_EQ(planned.plan.use(e).causes.size(), std::min(planned.plan.use(e).count, EffectUse::kNamed));
+  });
+  EXPECT_TRUE(planned.plan.needed.has(Effect::Diffuse));
+  return names_of(planned.plan.needed - EffectSet{Effect::Diffuse});
+}
 
 TEST(EffectPlan, NothingIsLiveUntilCalledFor) { EXPECT_EQ(effects_of(scene("")), Effects{}); }
 
 TEST(EffectPlan, EachEffectHasItsStatement) {
-  EXPECT_EQ(effects_of(scene("LightSource \"point\"")), Effects{"delta light"});
-  EXPECT_EQ(effects_of(scene("LightSource \"distant\"")), Effects{"delta light"});
-  EXPECT_EQ(effects_of(scene("LightSource \"infinite\"")), Effects{"environment light"});
-  EXPECT_EQ(effects_of(scene("LightSource \"skybox\"")), Effects{"environment light"});
-  EXPECT_EQ(effects_of(scene("AreaLightSource \"diffuse\" Shape \"disk\"")), Effects{"area light"});
-  EXPECT_EQ(effects_of(scene("Material \"mirror\" Shape \"disk\"")), Effects{"mirror"});
-  EXPECT_EQ(effects_of(scene("Material \"perfectglass\" Shape \"disk\"")), (Effects{"mirror", "refraction"}));
+  EXPECT_EQ(effects_of(scene("LightSource \"point\"")), (Effects{"delta-lights", "shadows"}));
+  EXPECT_EQ(effects_of(scene("LightSource \"distant\"")), (Effects{"delta-lights", "shadows"}));
+  EXPECT_EQ(effects_of(scene("LightSource \"infinite\"")), (Effects{"environment-lights", "shadows"}));
+  EXPECT_EQ(effects_of(scene("LightSource \"skybox\"")), (Effects{"environment-lights", "shadows"}));
+  EXPECT_EQ(effects_of(scene("AreaLightSource \"diffuse\" Shape \"disk\"")), (Effects{"area-lights", "shadows"}));
+  EXPECT_EQ(effects_of(scene("AreaLightSource \"diffuse\" \"rgb L\" [0 0 0] Shape \"disk\"")), Effects{});
+  EXPECT_EQ(effects_of(scene("Material \"mirror\" Shape \"disk\"")), Effects{"reflection"});
+  EXPECT_EQ(effects_of(scene("Material \"perfectglass\" Shape \"disk\"")), (Effects{"reflection", "refraction"}));
   EXPECT_EQ(effects_of(scene("Material \"plastic\" Shape \"disk\"")), Effects{"glossy"});
-  EXPECT_EQ(effects_of(scene("Material \"none\" Shape \"disk\"")), Effects{"interface"});
+  EXPECT_EQ(effects_of(scene("Material \"none\" Shape \"disk\"")), Effects{"interfaces"});
   EXPECT_EQ(effects_of(scene("ObjectBegin \"o\" Shape \"disk\" ObjectEnd ObjectInstance \"o\"")),
             Effects{"instancing"});
   EXPECT_EQ(effects_of(scene("ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Shape \"disk\"")),
-            Effects{"motion blur"});
+            Effects{"motion-blur"});
   EXPECT_EQ(
       effects_of(scene("", "ActiveTransform EndTime Translate 1 0 0 ActiveTransform All Camera \"perspective\"\n")),
-      Effects{"motion blur"});
-  EXPECT_EQ(effects_of(scene("", "Camera \"perspective\" \"float lensradius\" 0.1\n")), Effects{"depth of field"});
-  EXPECT_EQ(effects_of(scene(
-                "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"matte\" \"texture Kd\" \"t\" Shape \"disk\"")),
-            Effects{"texture filtering"});
-  EXPECT_EQ(effects_of(scene(
-                "Texture \"b\" \"float\" \"bilerp\" Material \"matte\" \"texture bumpmap\" \"b\" Shape \"disk\"")),
-            Effects{"bump"});
-  const char* mesh = "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0] ";
-  EXPECT_EQ(effects_of(scene(std::string("Texture \"a\" \"float\" \"bilerp\" ") + mesh + "\"texture alpha\" \"a\"")),
-            Effects{"alpha mask"});
-  EXPECT_EQ(effects_of(scene(std::string(mesh) + "\"float shadowalpha\" 0")), Effects{"alpha mask"});
+      Effects{"motion-blur"});
+  EXPECT_EQ(effects_of(scene("", "Camera \"perspective\" \"float lensradius\" 0.1\n")), Effects{"depth-of-field"});
+}
+
+TEST(EffectPlan, TexturesAreFilteredForSurfacesAlone) {
+  const auto matte = [](const std::string& texture) {
+    return scene("Texture \"t\" \"spectrum\" " + texture + " Material \"matte\" \"texture Kd\" \"t\" Shape \"disk\"");
+  };
+  EXPECT_EQ(effects_of(matte("\"checkerboard\"")), (Effects{"textures", "texture-filtering"}));
+  EXPECT_EQ(effects_of(matte("\"checkerboard\" \"string aamode\" \"none\"")), Effects{"textures"});
+  EXPECT_EQ(effects_of(matte("\"constant\"")), Effects{});
+  EXPECT_EQ(effects_of(matte("\"checkerboard\" \"rgb tex2\" [1 1 1]")), Effects{});  // the same as its tex1
+  const std::string bumps = "Texture \"b\" \"float\" \"bilerp\" Material \"matte\" \"texture bumpmap\" \"b\" ";
+  EXPECT_EQ(effects_of(scene(bumps + "Shape \"disk\"")), (Effects{"bump", "textures"}));
+  // Alpha is looked up for rays, which have no footprint.
+  const std::string mesh = "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 0 1 0] ";
+  const std::string mask = "Texture \"a\" \"float\" \"checkerboard\" ";
+  EXPECT_EQ(effects_of(scene(mask + mesh + "\"texture alpha\" \"a\"")), (Effects{"alpha", "textures"}));
+  EXPECT_EQ(effects_of(scene(mask + mesh + "\"texture shadowalpha\" \"a\"")), (Effects{"alpha", "textures"}));
+  EXPECT_EQ(
+      effects_of(scene(mask + mesh + "\"texture alpha\" \"a\" Material \"matte\" \"texture sigma\" \"a\" " + mesh)),
+      (Effects{"alpha", "textures", "texture-filtering"}));
+  EXPECT_EQ(effects_of(scene(mesh + "\"float shadowalpha\" 0")), Effects{"alpha"});
 }
 
 TEST(EffectPlan, FlagsOfThePipeline) {
-  EXPECT_FALSE(Planned(scene("")).plan.needs_differentials);
-  EXPECT_FALSE(Planned(scene("")).plan.needs_time);
-  EXPECT_FALSE(Planned(scene("")).plan.needs_lens);
-  EXPECT_TRUE(Planned(scene("", "Camera \"perspective\" \"float lensradius\" 0.1\n")).plan.needs_lens);
-  EXPECT_TRUE(
-      Planned(scene("ActiveTransform EndTime Rotate 9 0 0 1 ActiveTransform All Shape \"disk\"")).plan.needs_time);
-  EXPECT_TRUE(
-      Planned(scene("Texture \"b\" \"float\" \"bilerp\" Material \"matte\" \"texture bumpmap\" \"b\" Shape \"disk\""))
-          .plan.needs_differentials);
+  EXPECT_FALSE(Planned(scene("")).plan.needs_differentials());
+  const std::string bump =
+      "Texture \"b\" \"float\" \"bilerp\" Material \"matte\" \"texture bumpmap\" \"b\" Shape \"disk\"";
+  EXPECT_TRUE(Planned(scene(bump)).plan.needs_differentials());
+  // What is switched off runs no stage, and a render of everything runs all of them at the same needs.
+  const auto plan = [](const PlanOptions& options) {
+    return Planned(scene("LightSource \"point\""), Planned::Warnings::Failures, options).plan;
+  };
+  EXPECT_FALSE(plan({.off = {Effect::Shadows}}).live(Effect::Shadows));
+  EXPECT_TRUE(plan({.off = {Effect::Shadows}}).called_for.has(Effect::Shadows));
+  EXPECT_EQ(plan({.off = {Effect::Shadows}}).use(Effect::Shadows).why_off, "switched off");
+  EXPECT_TRUE(plan({.everything_on = true}).live(Effect::MotionBlur));
+  EXPECT_EQ(plan({.everything_on = true}).needed, plan({}).needed);
+}
+
+TEST(EffectPlan, WhereNothingScattersLightsAreNotSampled) {
+  const std::string glass = "WorldBegin Material \"perfectglass\" Shape \"sphere\" %s WorldEnd\n";
+  const auto plan = [&](const std::string& light) {
+    std::string text = glass;
+    return Planned(text.replace(text.find("%s"), 2, light)).plan;
+  };
+  const EffectPlan point = plan("LightSource \"point\""), sky = plan("LightSource \"infinite\"");
+  const EffectPlan area = plan("AreaLightSource \"diffuse\" Shape \"disk\"");
+  for (const EffectPlan* p : {&point, &sky, &area}) {
+    EXPECT_FALSE(p->direct_light);
+    EXPECT_FALSE(p->live(Effect::Shadows));
+  }
+  EXPECT_EQ(point.light_live, (std::vector<uint8_t>{0}));
+  EXPECT_EQ(point.use(Effect::DeltaLights).why_off, "no surface scatters their light");
+  EXPECT_EQ(sky.light_live, (std::vector<uint8_t>{1}));  // rays that leave see it
+  EXPECT_TRUE(area.live(Effect::AreaLights));            // and this is seen
+  // What is in objects, moves or is a curve glows and lights nothing.
+  for (const char* glows :
+       {"ObjectBegin \"o\" AreaLightSource \"diffuse\" Shape \"disk\" ObjectEnd ObjectInstance \"o\"",
+        "AreaLightSource \"diffuse\" ActiveTransform EndTime Translate 1 0 0 Shape \"disk\"",
+        "AreaLightSource \"diffuse\" Shape \"curve\" \"point P\" [0 0 0 1 0 0 2 0 0 3 0 0]"}) {
+    const Planned planned(scene(glows), Planned::Warnings::Allowed);
+    EXPECT_TRUE(planned.plan.live(Effect::AreaLights)) << glows;
+    EXPECT_FALSE(planned.plan.direct_light) << glows;
+  }
+}
+
+TEST(EffectPlan, AMirrorAtMaxdepthOneSpawnsNothing) {
+  const std::string world = "WorldBegin Material \"mirror\" Shape \"sphere\" WorldEnd\n";
+  const EffectPlan plan = Planned("Integrator \"whitted\" \"integer maxdepth\" 1 " + world).plan;
+  EXPECT_TRUE(plan.called_for.has(Effect::Reflection));
+  EXPECT_FALSE(plan.live(Effect::Reflection));
+  EXPECT_EQ(plan.use(Effect::Reflection).why_off, "\"maxdepth\" allows no bounce");
+  EXPECT_TRUE(Planned("Integrator \"whitted\" \"integer maxdepth\" 2 " + world).plan.live(Effect::Reflection));
+}
+
+TEST(EffectPlan, EachEffectCanBeSwitchedOff) {
+  // One scene that calls for all of them.
+  const std::string all = scene(R"(
+      LightSource "point" LightSource "skybox"
+      Texture "c" "spectrum" "checkerboard" Texture "b" "float" "windy"
+      ObjectBegin "o" Shape "disk" ObjectEnd ObjectInstance "o"
+      Material "perfectglass" Shape "sphere"
+      Material "none" Shape "sphere"
+      Material "plastic" "texture Kd" "c" "texture bumpmap" "b"
+      Shape "trianglemesh" "integer indices" [0 1 2] "point P" [0 0 0 1 0 0 0 1 0] "float shadowalpha" 0
+      AreaLightSource "diffuse" Shape "disk"
+      ActiveTransform EndTime Translate 1 0 0 ActiveTransform All AreaLightSource "" Shape "disk")",
+                                "Camera \"perspective\" \"float lensradius\" 0.1\n");
+  EXPECT_EQ(Planned(all).plan.needed, EffectSet::all());
+  for_effects(EffectSet::all(), [&](Effect e) {
+    const EffectPlan plan = Planned(all, Planned::Warnings::Failures, {.off = {e}}).plan;
+    EXPECT_TRUE(plan.called_for.has(e)) << effect_name(e);
+    EXPECT_FALSE(plan.live(e)) << effect_name(e);
+    // Textures go with what they are for, and filtering goes with textures.
+    EffectSet gone{e};
+    if (e == Effect::Textures) gone = {Effect::Textures, Effect::TextureFiltering, Effect::Bump};
+    EXPECT_EQ(names_of(EffectSet::all() - plan.needed), names_of(gone)) << effect_name(e);
+  });
+}
+
+TEST(EffectPlan, NamesAreReadBack) {
+  std::string unknown;
+  EXPECT_EQ(parse_effects("bump,motion-blur", unknown), (EffectSet{Effect::Bump, Effect::MotionBlur}));
+  for_effects(EffectSet::all(), [&](Effect e) { EXPECT_EQ(parse_effects(effect_name(e), unknown), EffectSet{e}); });
+  EXPECT_EQ(unknown, "");
+  for (const char* wrong : {"", "bumps", "bump,", ",bump", "bump, alpha"}) {
+    unknown = "?";
+    EXPECT_TRUE(parse_effects(wrong, unknown).empty()) << wrong;
+    EXPECT_NE(unknown, "?") << wrong;
+  }
+}
+
+TEST(EffectPlan, TexturesThatNoParameterReadsAreNotLive) {
+  const auto live = [](const std::string& material) {
+    return Planned(scene("Texture \"t\" \"float\" \"windy\" Texture \"c\" \"spectrum\" \"windy\" Material " + material +
+                         " Shape \"disk\""))
+        .plan.texture_live;
+  };
+  using Live = std::vector<uint8_t>;
+  constexpr uint8_t kOn = 3;  // seen, and seen by surfaces
+  EXPECT_EQ(live("\"glass\" \"texture index\" \"t\""), (Live{kOn, 0}));
+  EXPECT_EQ(live("\"glass\" \"texture index\" \"t\" \"float eta\" 1.3"), (Live{0, 0}));
+  EXPECT_EQ(live("\"uber\" \"texture index\" \"t\" \"float eta\" 1.3"), (Live{0, 0}));
+  EXPECT_EQ(live("\"uber\" \"texture roughness\" \"t\""), (Live{kOn, 0}));
+  EXPECT_EQ(live("\"uber\" \"texture roughness\" \"t\" \"float uroughness\" 0.1"), (Live{0, 0}));
+  EXPECT_EQ(live("\"metal\" \"texture roughness\" \"t\" \"float uroughness\" 0.1"), (Live{kOn, 0}));
+  EXPECT_EQ(live("\"metal\" \"texture roughness\" \"t\" \"float uroughness\" 0.1 \"float vroughness\" 0.1"),
+            (Live{0, 0}));
+  EXPECT_EQ(live("\"plastic\" \"texture roughness\" \"t\" \"rgb Ks\" [0 0 0]"), (Live{0, 0}));
+  EXPECT_EQ(live("\"subsurface\" \"texture sigma_a\" \"c\" \"texture uroughness\" \"t\""), (Live{kOn, 0}));
+  EXPECT_EQ(live("\"kdsubsurface\" \"texture Kd\" \"c\" \"texture mfp\" \"c\""), (Live{0, 0}));
 }
 
 TEST(EffectPlan, WhatNobodyNeedsIsNotLive) {
@@ -96,7 +212,7 @@ TEST(EffectPlan, WhatNobodyNeedsIsNotLive) {
       LightSource "point" "rgb I" [0 0 0]
       LightSource "distant")"));
   const EffectPlan& plan = planned.plan;
-  EXPECT_EQ(plan.texture_live, (std::vector<uint8_t>{1, 1, 0}));  // inner through outer
+  EXPECT_EQ(plan.texture_live, (std::vector<uint8_t>{3, 3, 0}));  // inner through outer
   EXPECT_EQ(plan.object_live, (std::vector<uint8_t>{1, 0}));
   EXPECT_EQ(plan.shape_live, (std::vector<uint8_t>{1, 1, 0}));
   EXPECT_EQ(plan.light_live, (std::vector<uint8_t>{0, 1}));  // a black light lights nothing
@@ -108,7 +224,7 @@ TEST(EffectPlan, WhatNobodyNeedsIsNotLive) {
     EXPECT_EQ(plan.material_live[i], name == "used") << name;
   }
   EXPECT_EQ(live_materials, 2u);  // the default matte and "used"
-  EXPECT_FALSE(plan.live(Effect::Mirror));
+  EXPECT_FALSE(plan.live(Effect::Reflection));
   EXPECT_FALSE(plan.live(Effect::Refraction));
   EXPECT_TRUE(plan.live(Effect::Instancing));
   EXPECT_TRUE(plan.live(Effect::TextureFiltering));
@@ -119,7 +235,7 @@ TEST(EffectPlan, AShapeWithAlphaZeroIsNotThere) {
       scene("Material \"mirror\" Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [0 0 0 1 0 0 "
             "0 1 0] \"float alpha\" 0"));
   EXPECT_EQ(planned.plan.shape_live, (std::vector<uint8_t>{1, 0}));
-  EXPECT_FALSE(planned.plan.live(Effect::Mirror));
+  EXPECT_FALSE(planned.plan.live(Effect::Reflection));
 }
 
 TEST(EffectPlan, AnEmitterWithAlphaZeroIsKeptForItsLight) {
@@ -130,9 +246,9 @@ TEST(EffectPlan, AnEmitterWithAlphaZeroIsKeptForItsLight) {
   const std::string light = "AreaLightSource \"diffuse\" ";
   const Planned planned(scene(light + invisible));
   EXPECT_EQ(planned.plan.shape_live, (std::vector<uint8_t>{1, 1}));
-  EXPECT_TRUE(planned.plan.live(Effect::AreaLight));
-  EXPECT_TRUE(planned.plan.live(Effect::AlphaMask));
-  EXPECT_FALSE(planned.plan.live(Effect::Mirror));
+  EXPECT_TRUE(planned.plan.live(Effect::AreaLights));
+  EXPECT_TRUE(planned.plan.live(Effect::Alpha));
+  EXPECT_FALSE(planned.plan.live(Effect::Reflection));
   // What moves lights nothing, so there is nothing to keep.
   const Planned moving(scene(light + "ActiveTransform EndTime Translate 1 0 0 " + invisible));
   EXPECT_EQ(moving.plan.shape_live, (std::vector<uint8_t>{1, 0}));
@@ -140,20 +256,32 @@ TEST(EffectPlan, AnEmitterWithAlphaZeroIsKeptForItsLight) {
 
 TEST(EffectPlan, ABlackLobeCallsForNothing) {
   EXPECT_EQ(effects_of(scene("Material \"perfectglass\" \"rgb Kr\" [0 0 0] Shape \"disk\"")), Effects{"refraction"});
-  EXPECT_EQ(effects_of(scene("Material \"perfectglass\" \"rgb Kt\" [0 0 0] Shape \"disk\"")), Effects{"mirror"});
+  EXPECT_EQ(effects_of(scene("Material \"perfectglass\" \"rgb Kt\" [0 0 0] Shape \"disk\"")), Effects{"reflection"});
   EXPECT_EQ(effects_of(scene("Material \"mirror\" \"rgb Kr\" [0 0 0] Shape \"disk\"")), Effects{});
   EXPECT_EQ(effects_of(scene("Material \"plastic\" \"rgb Ks\" [0 0 0] Shape \"disk\"")), Effects{});
 }
 
 TEST(EffectPlan, CausesNameTheStatement) {
   const Planned planned("WorldBegin\nShape \"sphere\"\n  Material \"mirror\"\nShape \"disk\"\nWorldEnd\n");
-  ASSERT_EQ(planned.plan.causes.size(), 1u);
-  EXPECT_EQ(planned.sources.location(planned.plan.causes[0].where), "test.pbrt:3:3");
+  const EffectUse& use = planned.plan.use(Effect::Reflection);
+  ASSERT_EQ(use.causes.size(), 1u);
+  EXPECT_EQ(use.causes[0].what, "mirror");
+  EXPECT_EQ(planned.sources.location(use.causes[0].where), "test.pbrt:3:3");
 }
 
-TEST(EffectPlan, MediaAreNamedAsNotSimulated) {
+TEST(EffectPlan, WhatIsNotSimulatedIsNamed) {
   EXPECT_TRUE(Planned(scene("")).plan.ignored.empty());
-  EXPECT_EQ(Planned(scene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"")).plan.ignored.size(), 1u);
+  const auto ignored = [](const std::string& text) {
+    const Planned planned(text, Planned::Warnings::Allowed);
+    std::vector<std::string> out;
+    for (const Ignored& i : planned.plan.ignored) out.push_back(i.what + " at " + planned.sources.location(i.where));
+    return out;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(ignored(scene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"")),
+            Names{"participating media at test.pbrt:3:1"});
+  EXPECT_EQ(ignored(scene("", "Integrator \"path\"\nAccelerator \"kdtree\"\n")),
+            (Names{"integrator \"path\" at test.pbrt:1:1", "accelerator \"kdtree\" at test.pbrt:2:1"}));
 }
 
 }  // namespace

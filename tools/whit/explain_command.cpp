@@ -3,74 +3,134 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 
-#include "tools/whit/command_line.h"
+#include "core/scene/left_out.h"
+#include "tools/whit/effect_flags.h"
 #include "tools/whit/load.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
 
-/// The live effects with what called for them, the first few places each.
-nlohmann::json describe_effects(const EffectPlan& plan, const Sources& sources) {
-  constexpr size_t kShown = 3;
-  nlohmann::json effects = nlohmann::json::array();
-  for (unsigned e = 0; e < static_cast<unsigned>(Effect::kCount); ++e) {
-    const auto effect = static_cast<Effect>(e);
-    nlohmann::json causes = nlohmann::json::array();
-    size_t count = 0;
-    for (const EffectCause& cause : plan.causes) {
-      if (cause.effect != effect) continue;
-      if (count++ < kShown) causes.push_back({{"what", cause.what}, {"where", sources.location(cause.where)}});
-    }
-    effects.push_back(
-        {{"effect", effect_name(effect)}, {"on", plan.live(effect)}, {"causes", causes}, {"count", count}});
+using Json = nlohmann::ordered_json;
+
+// ---- What there is to say ----
+
+Json describe_use(Effect e, const EffectPlan& plan, const Sources& sources) {
+  const EffectUse& use = plan.use(e);
+  Json j{{"effect", effect_name(e)}, {"on", plan.needed.has(e)}, {"doc", effect_info(e).doc}};
+  if (use.count > 0) j["called_for_by"] = use.count;
+  for (const EffectCause& cause : use.causes) {
+    j["causes"].push_back({{"what", cause.what}, {"where", sources.location(cause.where)}});
   }
-  return effects;
+  if (!plan.needed.has(e)) {
+    j["why_off"] = use.count > 0 ? use.why_off : "nothing calls for it";
+    return j;
+  }
+  const EffectInfo& info = effect_info(e);
+  j["stages"] = info.stages;
+  if (*info.dimensions) j["dimensions"] = info.dimensions;
+  if (info.ray_bytes > 0) j["bytes_per_ray"] = info.ray_bytes;
+  if (info.point_bytes > 0) j["bytes_per_point"] = info.point_bytes;
+  return j;
 }
 
-/// Statements that the picture does not need: (kind, name or plugin, place).
-nlohmann::json describe_left_out(const PlannedScene& p, const Sources& sources) {
-  const SceneDescription& d = *p.bound.description;
-  nlohmann::json out = nlohmann::json::array();
-  const auto add = [&](const char* kind, const std::string& name, SourcePos where) {
-    out.push_back({{"kind", kind}, {"name", name}, {"where", sources.location(where)}});
+Json describe_left_out(const LeftOut& l, const Sources& sources) {
+  Json j{{"kind", l.kind}, {"name", l.name}, {"where", sources.location(l.where)}, {"reason", l.reason}};
+  for (const LeftOutFile& f : l.files) j["files"].push_back({{"name", f.name}, {"bytes", f.bytes}});
+  return j;
+}
+
+Json describe(const PlannedScene& p, const Sources& sources) {
+  Json world{{"effects", Json::array()}, {"left_out", Json::array()}, {"not_simulated", Json::array()}};
+  for_effects(EffectSet::all(), [&](Effect e) { world["effects"].push_back(describe_use(e, p.plan, sources)); });
+  for (const LeftOut& l : find_left_out(p.bound, p.plan)) world["left_out"].push_back(describe_left_out(l, sources));
+  for (const Ignored& i : p.plan.ignored) {
+    world["not_simulated"].push_back({{"what", i.what}, {"where", sources.location(i.where)}});
+  }
+  return world;
+}
+
+// ---- In words ----
+
+std::string text(const Json& j, const char* key) { return j.contains(key) ? j[key].get<std::string>() : std::string(); }
+
+std::string causes_text(const Json& effect) {
+  if (!effect.contains("causes")) return {};
+  std::string out;
+  for (const Json& c : effect["causes"]) {
+    out += fmt::format("{}{} at {}", out.empty() ? "" : "; ", text(c, "what"), text(c, "where"));
+  }
+  const size_t more = effect["called_for_by"].get<size_t>() - effect["causes"].size();
+  return more > 0 ? out + fmt::format("; {} more", more) : out;
+}
+
+/// What an effect adds: stages, sample dimensions, bytes.
+std::string additions_text(const Json& effect) {
+  std::string out = text(effect, "stages");
+  if (effect.contains("dimensions")) out += "; sample dimensions: " + text(effect, "dimensions");
+  const auto bytes = [&](const char* key, const char* of) {
+    if (effect.contains(key)) out += fmt::format("; {} bytes a {}", effect[key].get<int>(), of);
   };
-  for (size_t i = 0; i < d.textures.size(); ++i) {
-    if (!p.plan.texture_live[i]) add("texture", d.textures[i].name, d.textures[i].where);
-  }
-  for (size_t i = 1; i < d.materials.size(); ++i) {
-    if (!p.plan.material_live[i])
-      add("material", d.materials[i].name.empty() ? d.materials[i].plugin : d.materials[i].name, d.materials[i].where);
-  }
-  for (size_t i = 0; i < d.lights.size(); ++i) {
-    if (!p.plan.light_live[i]) add("light", d.lights[i].plugin, d.lights[i].where);
-  }
-  for (size_t i = 0; i < d.objects.size(); ++i) {
-    if (!p.plan.object_live[i]) add("object", d.objects[i].name, d.objects[i].where);
-  }
+  bytes("bytes_per_ray", "ray"), bytes("bytes_per_point", "point");
   return out;
 }
 
-void print_plan(const nlohmann::json& world) {
-  for (const auto& e : world["effects"]) {
-    std::string because;
-    for (const auto& c : e["causes"]) {
-      because += fmt::format("{}{} at {}", because.empty() ? "" : "; ", c["what"].get<std::string>(),
-                             c["where"].get<std::string>());
-    }
-    const size_t more = e["count"].get<size_t>() - e["causes"].size();
-    if (more > 0) because += fmt::format("; {} more", more);
-    const char* state = e["on"].get<bool>() ? "on " : "off";
-    fmt::print("{:<18} {}{}{}\n", e["effect"].get<std::string>(), state, because.empty() ? "" : "  ", because);
+void print_effects(const Json& effects) {
+  std::string absent;
+  fmt::print("on\n");
+  for (const Json& e : effects) {
+    if (!e["on"].get<bool>()) continue;
+    fmt::print("  {:<18} {}\n", text(e, "effect"), causes_text(e));
+    fmt::print("  {:<18} adds: {}\n", "", additions_text(e));
   }
-  fmt::print("{:<18} {}\n", "ray differentials", world["differentials"].get<bool>() ? "carried" : "none");
-  for (const auto& l : world["left_out"]) {
-    fmt::print("left out: {} \"{}\" at {}\n", l["kind"].get<std::string>(), l["name"].get<std::string>(),
-               l["where"].get<std::string>());
+  fmt::print("off\n");
+  for (const Json& e : effects) {
+    if (e["on"].get<bool>()) continue;
+    if (e.contains("causes"))
+      fmt::print("  {:<18} {} (for {})\n", text(e, "effect"), text(e, "why_off"), causes_text(e));
+    else absent += (absent.empty() ? "" : ", ") + text(e, "effect");
   }
-  for (const auto& i : world["ignored"]) fmt::print("not simulated: {}\n", i.get<std::string>());
+  if (!absent.empty()) fmt::print("  nothing calls for  {}\n", absent);
+}
+
+std::string files_text(const Json& entry) {
+  if (!entry.contains("files")) return {};
+  constexpr size_t kShown = 3;
+  double bytes = 0;
+  std::string names;
+  const size_t n = entry["files"].size();
+  for (size_t i = 0; i < n; ++i) {
+    const Json& file = entry["files"][i];
+    bytes += file["bytes"].get<double>();
+    if (i < kShown) names += (i > 0 ? ", " : "") + text(file, "name");
+  }
+  if (n > kShown) names += fmt::format(" and {} more", n - kShown);
+  return fmt::format("; not read: {}, {}", names, bytes_text(bytes));
+}
+
+/// Each kind's first few.
+void print_left_out(const Json& left_out) {
+  constexpr int kShown = 10;
+  if (!left_out.empty()) fmt::print("left out\n");
+  std::map<std::string, int> seen;
+  for (const Json& l : left_out) {
+    const std::string kind = text(l, "kind");
+    if (++seen[kind] > kShown) continue;
+    fmt::print("  {} \"{}\" at {}: {}{}\n", kind, text(l, "name"), text(l, "where"), text(l, "reason"), files_text(l));
+  }
+  for (const auto& [kind, count] : seen) {
+    if (count > kShown) fmt::print("  and {} more of kind {} (--json lists all)\n", count - kShown, kind);
+  }
+}
+
+void print_world(const Json& world) {
+  print_effects(world["effects"]);
+  print_left_out(world["left_out"]);
+  if (!world["not_simulated"].empty()) fmt::print("not simulated\n");
+  for (const Json& i : world["not_simulated"]) fmt::print("  {} at {}\n", text(i, "what"), text(i, "where"));
 }
 
 }  // namespace
@@ -78,29 +138,34 @@ void print_plan(const nlohmann::json& world) {
 int explain_command(const Arguments& args) {
   std::string path;
   bool as_json = false;
+  EffectFlags flags;
   CLI::App app("Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
                "whit explain");
   app.add_option("scene", path, "Scene file; standard input without");
+  add_effect_flags(app, flags);
   app.add_flag("--json", as_json, "Print the plan as JSON");
   int code = kDone;
   if (!parse_arguments(app, args, code)) return code;
+  if (const std::string problem = usage_problem(flags); !problem.empty()) {
+    say("whit explain: " + problem);
+    return kUsage;
+  }
   Sources sources;
   LoadedFile file = load_file(sources, path);
   Diagnostics all = file.parsed.diagnostics;
-  nlohmann::json worlds = nlohmann::json::array();
+  Json worlds = Json::array();
   for (const SceneDescription& world : file.parsed.scenes) {
-    const PlannedScene p = plan_scene(world, sources, all);
-    worlds.push_back({{"effects", describe_effects(p.plan, sources)},
-                      {"differentials", p.plan.needs_differentials},
-                      {"left_out", describe_left_out(p, sources)},
-                      {"ignored", p.plan.ignored}});
+    worlds.push_back(describe(plan_scene(world, sources, all, plan_options(flags)), sources));
   }
   print_diagnostics(sources, all);
   if (all.has_errors()) return exit_code(all);
   if (as_json) {
-    fmt::print("{}\n", nlohmann::json{{"worlds", worlds}}.dump(1));
-  } else {
-    for (const auto& world : worlds) print_plan(world);
+    fmt::print("{}\n", Json{{"worlds", worlds}}.dump(1));
+    return kDone;
+  }
+  for (size_t i = 0; i < worlds.size(); ++i) {
+    if (worlds.size() > 1) fmt::print("{}world {} of {}\n", i > 0 ? "\n" : "", i + 1, worlds.size());
+    print_world(worlds[i]);
   }
   return kDone;
 }

@@ -31,7 +31,9 @@ void print_overview() {
     for (const std::string& name : plugin_names(category)) names += (names.empty() ? "" : " ") + name;
     fmt::print("  {:<18} {}\n", category, names);
   }
-  fmt::print("\nwhit help statement shows the statements of a scene file; --json prints all this for machines\n");
+  fmt::print(
+      "\nwhit help statement shows the statements of a scene file, whit help effects what --without knows; "
+      "--json prints all this for machines\n");
 }
 
 /// True for the types that go wherever "rgb" does.
@@ -80,6 +82,13 @@ void print_statements() {
   }
 }
 
+void print_effects() {
+  for_effects(EffectSet::all(), [](Effect e) {
+    const EffectInfo& info = effect_info(e);
+    fmt::print("{:<18} {}; without: {}\n", info.name, info.doc, info.off);
+  });
+}
+
 // ---- For machines ----
 
 Json describe(const ParamSpec& p) {
@@ -116,9 +125,13 @@ Json describe(const StatementRow& s) {
 }
 
 void print_json() {
-  Json all{{"plugins", Json::array()}, {"statements", Json::array()}};
+  Json all{{"plugins", Json::array()}, {"statements", Json::array()}, {"effects", Json::array()}};
   for (const PluginInfo* p : list_plugins()) all["plugins"].push_back(describe(*p));
   for (const StatementRow& s : statements()) all["statements"].push_back(describe(s));
+  for_effects(EffectSet::all(), [&](Effect e) {
+    const EffectInfo& info = effect_info(e);
+    all["effects"].push_back({{"name", info.name}, {"doc", info.doc}, {"without", info.off}});
+  });
   fmt::print("{}\n", all.dump(1));
 }
 
@@ -131,8 +144,11 @@ int help_command(const Arguments& args) {
     print_overview();
     return kDone;
   }
-  if (args[0] == "--json" || args[0] == "statement") {
-    args[0] == "--json" ? print_json() : print_statements();
+  const std::pair<const char*, void (*)()> topics[] = {
+      {"--json", print_json}, {"statement", print_statements}, {"effects", print_effects}};
+  for (const auto& [topic, print] : topics) {
+    if (args[0] != topic) continue;
+    print();
     return kDone;
   }
   // A category may be two words: "float texture".
@@ -141,7 +157,7 @@ int help_command(const Arguments& args) {
   if (list_plugins(category).empty() && args.size() > 1) category += " " + args[1], used = 2;
   const auto plugins = list_plugins(category);
   if (plugins.empty()) {
-    std::vector<std::string> known{"statement"};
+    std::vector<std::string> known{"statement", "effects"};
     for (const PluginInfo* p : list_plugins()) known.push_back(p->category);
     say(fmt::format("whit help: no category \"{}\"{}", args[0], remedy(did_you_mean(args[0], known))));
     return kUsage;

@@ -35,12 +35,26 @@ LoadedFile load_file(Sources& sources, const std::string& path) {
   return out;
 }
 
-PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics) {
+namespace {
+
+/// A build of which effects are compiled out is for measurements, and must not show half of a scene.
+void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
+  for_effects(plan.needed & kCompiledOut, [&](Effect e) {
+    diagnostics.error(plan.use(e).causes.front().where, std::string("this build lacks ") + effect_name(e),
+                      "configure one without WHIT_COMPILE_OUT, or switch it off with --without");
+  });
+}
+
+}  // namespace
+
+PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics,
+                        const PlanOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   PlannedScene out;
   const ValuePosition position = [&sources](const Parameter& p, size_t i) { return value_position(sources, p, i); };
-  out.bound = bind_scene(description, position, diagnostics);
-  out.plan = plan_effects(out.bound);
+  out.bound = bind_scene(description, position, diagnostics, !options.off.has(Effect::Textures));
+  out.plan = plan_effects(out.bound, options);
+  check_build(out.plan, diagnostics);
   out.seconds = since(start);
   return out;
 }

@@ -22,7 +22,8 @@ struct PlannedScene {
   EffectPlan plan;
   double seconds = 0;
 };
-PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics);
+PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics,
+                        const PlanOptions& options = {});
 
 /// Everything wrong with a file: what parsing found, and what planning its worlds finds in addition. For files with
 /// mistakes, where nothing else will be done with the worlds.

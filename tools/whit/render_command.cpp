@@ -17,6 +17,7 @@
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/display_server.h"
+#include "tools/whit/effect_flags.h"
 #include "tools/whit/load.h"
 #include "tools/whit/output.h"
 #include "tools/whit/terminal.h"
@@ -30,6 +31,7 @@ struct Settings {
   std::vector<double> crop;
   std::vector<int> pixel;
   std::string debug_pixel;
+  EffectFlags effects;
   int threads = 0, spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;
@@ -72,6 +74,9 @@ void declare(CLI::App& app, Settings& s) {
   app.add_option("--seed", s.seed, "Seed of the random numbers");
   app.add_option("--pixel", s.pixel, "Render one pixel: x,y")->expected(2)->allow_extra_args(false);
   app.add_option("--debug-pixel", s.debug_pixel, "Say how a pixel comes about, without a picture: x,y or x,y,sample");
+  add_effect_flags(app, s.effects);
+  app.add_flag("--plan-check", s.effects.plan_check,
+               "Run every stage, called for or not, for the same picture: a test");
   app.add_option("--view", s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's");
   app.add_option("--ocio", s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one");
   app.add_option("--exposure", s.output.exposure, "Stops by which the display picture is brightened");
@@ -120,7 +125,7 @@ std::string usage_problem(const Settings& s) {
   if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
     return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
   }
-  return {};
+  return usage_problem(s.effects);
 }
 
 /// Files that must be there before the first scene is rendered; "" or the first problem.
@@ -187,10 +192,10 @@ class RenderJob {
 
   int render_world(const SceneDescription& world) {
     Diagnostics diagnostics;
-    PlannedScene planned = plan_scene(world, sources_, diagnostics);
+    PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
     times_.plan = planned.seconds;
-    for (const std::string& ignored : planned.plan.ignored) {
-      diagnostics.warning(world.world_begin, ignored + " is not simulated", "the picture is made without");
+    if (!world.media.empty() || !world.media_uses.empty()) {
+      diagnostics.warning(world.world_begin, "participating media is not simulated", "the picture is made without");
     }
     if (int code = report(diagnostics); code != kDone) return code;
     if (!planned.bound.film.plugin) return kSceneError;
@@ -370,6 +375,8 @@ class RenderJob {
                     scene.instances.size(), scene.lights.size()));
     say(fmt::format("{} surface points, {} footprints, {} interface crossings.", count_text(s.surface_points),
                     count_text(s.footprints), count_text(s.passing_rays)));
+    say(fmt::format("{} time samples, {} lens samples, {} alpha tests, {} texture values.", count_text(s.time_samples),
+                    count_text(s.lens_samples), count_text(s.alpha_tests), count_text(s.texture_values)));
     say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
                     t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
   }

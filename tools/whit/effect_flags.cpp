@@ -1,0 +1,32 @@
+#include "tools/whit/effect_flags.h"
+
+#include <fmt/format.h>
+
+namespace whit {
+
+void add_effect_flags(CLI::App& app, EffectFlags& flags) {
+  app.add_option("--without", flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')");
+  app.add_option("--only", flags.only, "Effects to keep of those that the scene calls for")->excludes("--without");
+}
+
+std::string usage_problem(const EffectFlags& flags) {
+  for (const auto& [flag, names] : {std::pair("--without", flags.without), std::pair("--only", flags.only)}) {
+    std::string unknown;
+    if (names.empty() || !parse_effects(names, unknown).empty()) continue;
+    const std::string hint = did_you_mean(unknown, effect_names());
+    return fmt::format("{}: there is no effect \"{}\"; {}", flag, unknown,
+                       hint.empty() ? fmt::format("there are {}", fmt::join(effect_names(), ", ")) : hint);
+  }
+  return {};
+}
+
+PlanOptions plan_options(const EffectFlags& flags) {
+  std::string none;
+  PlanOptions o;
+  if (!flags.without.empty()) o.off = parse_effects(flags.without, none);
+  if (!flags.only.empty()) o.off = EffectSet::all() - parse_effects(flags.only, none);
+  o.everything_on = flags.plan_check;
+  return o;
+}
+
+}  // namespace whit
