@@ -1,6 +1,7 @@
 #include "parser/include.h"
 
 #include <filesystem>
+#include <system_error>
 
 #include "parser/parameters.h"
 
@@ -21,6 +22,23 @@ std::string join_path(const std::string& folder, const std::string& path) {
   return (std::filesystem::path(folder) / std::filesystem::path(path)).string();
 }
 
+namespace {
+
+void report_unopened(Reporter& reporter, SourcePos where, const std::string& full, const std::string& problem) {
+  reporter.file_error(where, "cannot open " + in_quotes(full) + ": " + problem);
+}
+
+}  // namespace
+
+bool check_include_exists(Reporter& reporter, const std::string& folder, const std::string& path, SourcePos where) {
+  const std::string full = join_path(folder, path);
+  std::error_code failed;
+  const bool is_folder = std::filesystem::is_directory(full, failed);
+  if (is_folder) failed = std::make_error_code(std::errc::is_a_directory);
+  if (failed) report_unopened(reporter, where, full, failed.message());
+  return !failed;
+}
+
 std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const std::string& folder,
                                      const std::string& path, SourcePos where,
                                      const std::function<bool(uint32_t)>& is_open) {
@@ -28,7 +46,7 @@ std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const
   std::string problem;
   const std::optional<uint32_t> file = sources.open(full, problem);
   if (!file) {
-    reporter.file_error(where, "cannot open " + in_quotes(full) + ": " + problem);
+    report_unopened(reporter, where, full, problem);
     return std::nullopt;
   }
   if (is_open(*file)) {

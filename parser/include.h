@@ -23,6 +23,9 @@ std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const
                                      const std::string& path, SourcePos where,
                                      const std::function<bool(uint32_t)>& is_open);
 
+/// For an Include whose file need not be read: false, and the report open_include() would make, when it is not there.
+bool check_include_exists(Reporter& reporter, const std::string& folder, const std::string& path, SourcePos where);
+
 /// Gives `trailing`, the parameters behind an Include, to the last statement of its file: for pbrt a parameter list does
 /// not end where a file ends. Call with every statement read from that file; the others are left as they are.
 void append_trailing(Lexer& lexer, ReadResult result, ParameterList& trailing, Statement& statement);

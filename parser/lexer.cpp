@@ -11,7 +11,11 @@ namespace whit {
 
 namespace {
 
-enum : uint8_t { kSpace = 1, kDelimiter = 2, kDigit = 4, kNumberStart = 8 };
+enum : uint8_t { kSpace = 1, kDelimiter = 2, kDigit = 4, kNumberStart = 8, kListStop = 16 };
+
+/// Where skip_list() must look: the end of the list, what may hide one, what shows that it was not closed (Include and
+/// the Object statements begin with these letters, which no number has).
+constexpr char kListStops[] = {']', '[', '"', '#', 'O', 'I'};
 
 constexpr std::array<uint8_t, 256> make_classes() {
   std::array<uint8_t, 256> classes{};
@@ -19,6 +23,7 @@ constexpr std::array<uint8_t, 256> make_classes() {
   for (const char c : {'[', ']', '"', '#'}) classes[static_cast<uint8_t>(c)] = kDelimiter;
   for (char c = '0'; c <= '9'; ++c) classes[static_cast<uint8_t>(c)] = kDigit | kNumberStart;
   for (const char c : {'+', '-', '.'}) classes[static_cast<uint8_t>(c)] = kNumberStart;
+  for (const char c : kListStops) classes[static_cast<uint8_t>(c)] |= kListStop;
   return classes;
 }
 constexpr std::array<uint8_t, 256> kClasses = make_classes();
@@ -323,6 +328,42 @@ bool Lexer::read_integers(std::vector<int32_t>& out) {
   }
   end_list(last, p);
   return true;
+}
+
+namespace {
+
+/// The first character in [p, end) that is in kListStops.
+const char* find_list_stop(const char* p, const char* end) {
+  // Block by block, without a way out inside and with minima instead of comparisons: of that all compilers make vector
+  // code.
+  constexpr ptrdiff_t kBlock = 64;
+  for (; end - p >= kBlock; p += kBlock) {
+    uint8_t least = 255;
+    for (ptrdiff_t i = 0; i < kBlock; ++i)
+      for (const char stop : kListStops) least = std::min(least, static_cast<uint8_t>(p[i] ^ stop));
+    if (least == 0) break;
+  }
+  while (p < end && !is(*p, kListStop)) ++p;
+  return p;
+}
+
+}  // namespace
+
+bool Lexer::skip_list() {
+  const char* p = cursor();
+  for (;;) {
+    p = find_list_stop(p, end_);
+    consume_to(p);
+    if (p == end_) return false;
+    if (*p == '#') {
+      p = pass_comment(p);
+      continue;
+    }
+    const Token token = next();
+    if (token.kind == TokenKind::Close) return true;
+    if (token.kind != TokenKind::String) return false;
+    p = begin_ + token.end();
+  }
 }
 
 void Lexer::resynchronise(bool (*starts_statement)(std::string_view)) {

@@ -64,6 +64,10 @@ class Lexer {
   /// that does not fit is an error.
   bool read_integers(std::vector<int32_t>& out);
 
+  /// Consumes the rest of a list whose [ was the last token, its ] included, without a look at the values. False, and
+  /// somewhere inside, when it is not closed or holds what no list does, such as another [ or a directive.
+  bool skip_list();
+
   /// Moves on to the next place where a statement may start: here if the next token is a directive, else the
   /// first line that begins with a word for which `starts_statement` holds, else the end of the file.
   void resynchronise(bool (*starts_statement)(std::string_view));

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "parser/include.h"
+#include "parser/instance_names.h"
 #include "parser/lexer.h"
 #include "parser/reporter.h"
 #include "parser/scene_builder.h"
@@ -27,8 +28,8 @@ std::string absolute(const std::string& folder) {
 /// the depth of inclusion is not limited by the program's.
 class FileReader {
  public:
-  FileReader(Sources& sources, Reporter& reporter, std::string folder)
-      : sources_(sources), reporter_(reporter), folder_(std::move(folder)) {}
+  FileReader(Sources& sources, Reporter& reporter, std::string folder, const ParseOptions& options)
+      : sources_(sources), reporter_(reporter), folder_(std::move(folder)), options_(options) {}
 
   uint64_t read(uint32_t main_file, SceneBuilder& builder) {
     push(main_file);
@@ -39,7 +40,13 @@ class FileReader {
       if (result == ReadResult::End) open_.pop_back();
       if (result != ReadResult::Good) continue;
       builder.apply(statement_);
-      if (auto include = builder.take_include()) this->include(*include);
+      auto include = builder.take_include();
+      if (!include) continue;
+      if (can_contribute(builder)) {
+        this->include(*include);
+      } else if (check_include_exists(reporter_, folder_, include->path, include->where)) {
+        builder.leave_unread(join_path(folder_, include->path), include->where);
+      }
     }
     return bytes_;
   }
@@ -67,6 +74,19 @@ class FileReader {
     open_.push_back({file, Lexer(text, file, reporter_), std::move(trailing)});
   }
 
+  /// False when what is read now belongs to an object that the world does not place.
+  bool can_contribute(const SceneBuilder& builder) {
+    const ObjectDescription* object = builder.open_object();
+    if (options_.read_unplaced || !object) return true;
+    if (looked_ahead_in_ != builder.worlds()) {
+      looked_ahead_in_ = builder.worlds();
+      std::vector<ReadingPlace> places;
+      for (const OpenFile& open : open_) places.push_back({open.file, open.lexer.consumed()});
+      placed_ = names_of_instances(sources_, folder_, places);
+    }
+    return !placed_ || placed_->count(object->name) != 0;
+  }
+
   void include(SceneBuilder::IncludeRequest& request) {
     const auto is_open = [this](uint32_t file) {
       return std::any_of(open_.begin(), open_.end(), [file](const OpenFile& open) { return open.file == file; });
@@ -78,16 +98,20 @@ class FileReader {
   Sources& sources_;
   Reporter& reporter_;
   std::string folder_;
+  const ParseOptions& options_;
   std::vector<OpenFile> open_;
   Statement statement_;
   uint64_t bytes_ = 0;
+  size_t looked_ahead_in_ = 0;           ///< The world placed_ belongs to, counted from 1.
+  std::optional<InstanceNames> placed_;  ///< The objects placed behind the world's first Include in an object.
 };
 
-void parse(Sources& sources, uint32_t file, const std::string& folder, ParseResult& result) {
+void parse(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options,
+           ParseResult& result) {
   Reporter reporter(result.diagnostics);
   if (check_is_scene(sources, file, reporter)) {
     SceneBuilder builder(sources, reporter, absolute(folder));
-    result.bytes = FileReader(sources, reporter, folder).read(file, builder);
+    result.bytes = FileReader(sources, reporter, folder, options).read(file, builder);
     builder.finish(file);
     result.scenes = builder.take_scenes();
   }
@@ -96,7 +120,7 @@ void parse(Sources& sources, uint32_t file, const std::string& folder, ParseResu
 
 }  // namespace
 
-ParseResult parse_file(Sources& sources, const std::string& path) {
+ParseResult parse_file(Sources& sources, const std::string& path, const ParseOptions& options) {
   ParseResult result;
   std::string problem;
   const std::optional<uint32_t> file = sources.open(path, problem);
@@ -104,13 +128,14 @@ ParseResult parse_file(Sources& sources, const std::string& path) {
     result.diagnostics.file_error({}, "cannot open " + in_quotes(path) + ": " + problem);
     return result;
   }
-  parse(sources, *file, fs::path(path).parent_path().string(), result);
+  parse(sources, *file, fs::path(path).parent_path().string(), options, result);
   return result;
 }
 
-ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder) {
+ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder,
+                       const ParseOptions& options) {
   ParseResult result;
-  parse(sources, sources.add_text(std::move(name), std::move(text)), folder, result);
+  parse(sources, sources.add_text(std::move(name), std::move(text)), folder, options, result);
   return result;
 }
 

@@ -17,11 +17,18 @@ struct ParseResult {
   uint64_t bytes = 0;  ///< Bytes of text parsed, included files counted each time.
 };
 
+struct ParseOptions {
+  /// Reads also the files that are included in definitions of objects that are never placed. Without it they are listed
+  /// in SceneDescription::unread_files instead.
+  bool read_unplaced = false;
+};
+
 /// Parses a file and all it includes. `sources` keeps their text, which every SourcePos refers to.
-ParseResult parse_file(Sources& sources, const std::string& path);
+ParseResult parse_file(Sources& sources, const std::string& path, const ParseOptions& options = {});
 
 /// Parses text that is no file: standard input, a test. Includes and assets are relative to `folder`
 /// ("" is the current one).
-ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder);
+ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder,
+                       const ParseOptions& options = {});
 
 }  // namespace whit

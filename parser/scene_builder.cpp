@@ -50,6 +50,7 @@ SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::stri
 
 void SceneBuilder::apply(Statement& statement) {
   if (!allowed(statement)) return;
+  if (object_has_gaps_ && matters_to_object_alone(*statement.row)) return;
   // An Include's parameters wait for the statement they belong to: textures may be defined before it.
   if (statement.row->handler != &SceneBuilder::include) resolve_textures(statement.parameters);
   (this->*statement.row->handler)(statement);
@@ -73,6 +74,19 @@ bool SceneBuilder::allowed(const Statement& s) {
     return false;
   }
   return true;
+}
+
+/// Whether a statement inside an object definition says something of the shapes there and of nothing else.
+bool SceneBuilder::matters_to_object_alone(const StatementRow& row) {
+  using B = SceneBuilder;
+  constexpr decltype(StatementRow::handler) kThose[] = {
+      &B::texture, &B::material, &B::make_named_material, &B::named_material, &B::area_light_source, &B::shape};
+  return std::find(std::begin(kThose), std::end(kThose), row.handler) != std::end(kThose);
+}
+
+void SceneBuilder::leave_unread(std::string path, SourcePos where) {
+  scene().unread_files.push_back({std::move(path), where, current_object_});
+  object_has_gaps_ = true;
 }
 
 std::optional<SceneBuilder::IncludeRequest> SceneBuilder::take_include() {
@@ -140,9 +154,12 @@ void SceneBuilder::coord_sys_transform(Statement& s) {
     state_.ctm = found->second;
     return;
   }
-  const std::string slip = suggest(reporter_, s.names[0], coordinate_systems_);
+  if (object_has_gaps_) return;  // It may be defined there.
+  std::string remedy = suggest(reporter_, s.names[0], coordinate_systems_);
+  if (remedy.empty() && !scene().unread_files.empty())
+    remedy = "files included in objects that are never placed are not read; is it defined in one of them?";
   reporter_.warning(s.names_at[0],
-                    "no coordinate system named " + in_quotes(s.names[0]) + ": CoordSysTransform is ignored", slip);
+                    "no coordinate system named " + in_quotes(s.names[0]) + ": CoordSysTransform is ignored", remedy);
 }
 
 void SceneBuilder::active_transform(Statement& s) {
@@ -264,6 +281,7 @@ void SceneBuilder::open_block(BlockKind kind, const Statement& s, bool ignored) 
 }
 
 void SceneBuilder::warn_unclosed(const OpenBlock& block, const std::string& before) {
+  if (object_has_gaps_) return;  // Its end may stand there.
   constexpr const char* kNames[] = {"Attribute", "Transform", "Object"};
   const std::string name = kNames[static_cast<int>(block.kind)];
   reporter_.warning(block.where, name + "Begin is never closed", name + "End is assumed before " + before);
@@ -287,7 +305,10 @@ void SceneBuilder::leave_top_block() {
       }
     }
   }
-  if (block.kind == BlockKind::Object && !block.ignored) current_object_ = -1;
+  if (block.kind == BlockKind::Object && !block.ignored) {
+    current_object_ = -1;
+    object_has_gaps_ = false;
+  }
   blocks_.pop_back();
 }
 
@@ -307,9 +328,11 @@ void SceneBuilder::bring_to_top(size_t block) {
 void SceneBuilder::close_block(BlockKind kind, const Statement& s) {
   const std::string end(s.row->name);
   const auto found = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const OpenBlock& block) {
-    return block.kind == kind || (kind == BlockKind::Attribute && block.kind == BlockKind::Object);
+    const bool fence = kind == BlockKind::Attribute || object_has_gaps_;
+    return block.kind == kind || (fence && block.kind == BlockKind::Object);
   });
   if (found == blocks_.rend() || found->kind != kind) {
+    if (object_has_gaps_) return;  // Its begin may stand there.
     const std::string begin = end.substr(0, end.size() - 3) + "Begin";
     reporter_.error(
         s.where, end + " without " + begin,

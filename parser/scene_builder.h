@@ -30,6 +30,17 @@ class SceneBuilder {
   /// The file the last statement wants read now, if it was an Include.
   std::optional<IncludeRequest> take_include();
 
+  /// The object whose definition is being read, null outside of one.
+  const ObjectDescription* open_object() const {
+    return current_object_ < 0 ? nullptr : &scenes_.back().objects[static_cast<size_t>(current_object_)];
+  }
+
+  /// How many worlds have begun.
+  size_t worlds() const { return scenes_.size(); }
+
+  /// Says that an Include in the open object, which is never placed, is not followed.
+  void leave_unread(std::string path, SourcePos where);
+
   /// Reports what is missing at the end of the main file.
   void finish(uint32_t main_file);
 
@@ -106,6 +117,7 @@ class SceneBuilder {
   };
 
   bool allowed(const Statement& s);
+  static bool matters_to_object_alone(const StatementRow& row);
   void change_ctm(const Statement& s, const Mat4d& m, bool concatenate);
   int current_transform(const Statement& s, bool warn_animated);
   int intern(const TransformPair& pair);
@@ -137,6 +149,7 @@ class SceneBuilder {
   std::vector<Definition> definitions_;
   std::unordered_map<std::string, TransformPair> coordinate_systems_;
   int current_object_ = -1;
+  bool object_has_gaps_ = false;  ///< A file included in it was left unread.
   int warned_area_light_ = -1;
   std::optional<IncludeRequest> include_;
 };

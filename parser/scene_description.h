@@ -84,6 +84,15 @@ struct InstanceDescription {
   SourcePos where;
 };
 
+/// A file included in the definition of an object that is never placed. Nothing of it is in the description: not its
+/// shapes, and neither the lights, coordinate systems and media of the whole world that it may define. Nor is what stands
+/// behind it in the object and matters to the object alone, for that may build on the file.
+struct UnreadFile {
+  std::string path;  ///< As it would have been opened.
+  SourcePos where;   ///< The string with the path.
+  int object = 0;    ///< Index into objects.
+};
+
 /// One WorldBegin/End block with the options in force. Options the file does not name have plugin "".
 struct SceneDescription {
   Entity camera, film, filter, sampler, integrator, accelerator;
@@ -98,6 +107,7 @@ struct SceneDescription {
   std::vector<ShapeDescription> shapes;
   std::vector<ObjectDescription> objects;
   std::vector<InstanceDescription> instances;
+  std::vector<UnreadFile> unread_files;
   std::vector<Entity> media;          ///< MakeNamedMedium: parsed, not simulated.
   std::vector<SourcePos> media_uses;  ///< MediumInterface statements.
 

@@ -57,6 +57,7 @@ std::string dump(const SceneDescription& scene) {
   }
   for (const ObjectDescription& o : scene.objects) out << "object " << o.name << "\n";
   for (const InstanceDescription& i : scene.instances) out << "instance " << i.object << " " << i.transform << "\n";
+  for (const UnreadFile& u : scene.unread_files) out << "unread " << u.path << " " << u.object << "\n";
   for (const Entity& m : scene.media) dump(out, "medium", m);
   out << scene.media_uses.size() << " " << scene.folder << "\n";
   return out.str();

@@ -13,8 +13,8 @@ namespace whit {
 
 /// Text parsed, with the sources its positions refer to.
 struct Parsed {
-  explicit Parsed(const std::string& text, const std::string& folder = "/nowhere")
-      : result(parse_text(sources, "test.pbrt", text, folder)) {}
+  explicit Parsed(const std::string& text, const std::string& folder = "/nowhere", const ParseOptions& options = {})
+      : result(parse_text(sources, "test.pbrt", text, folder, options)) {}
 
   /// The only scene of the text.
   const SceneDescription& scene() const { return result.scenes.at(0); }

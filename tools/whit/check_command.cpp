@@ -15,7 +15,8 @@ int check_command(const Arguments& args) {
   if (scenes.empty()) scenes.push_back("-");
   for (const std::string& path : scenes) {
     Sources sources;
-    const Diagnostics all = all_problems(load_file(sources, path), sources);
+    const ParseOptions everything{.read_unplaced = true};
+    const Diagnostics all = all_problems(load_file(sources, path, everything), sources);
     print_diagnostics(sources, all);
     if (!all.all().empty()) code = kNo;
   }

@@ -16,21 +16,21 @@ double since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-LoadedFile load_text(Sources& sources, const std::string& name, std::string text) {
+LoadedFile load_text(Sources& sources, const std::string& name, std::string text, const ParseOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   LoadedFile out;
-  out.parsed = parse_text(sources, name, std::move(text), "");
+  out.parsed = parse_text(sources, name, std::move(text), "", options);
   out.parse_seconds = since(start);
   return out;
 }
 
-LoadedFile load_file(Sources& sources, const std::string& path) {
+LoadedFile load_file(Sources& sources, const std::string& path, const ParseOptions& options) {
   if (path.empty() || path == "-") {
-    return load_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}});
+    return load_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}}, options);
   }
   const auto start = std::chrono::steady_clock::now();
   LoadedFile out;
-  out.parsed = parse_file(sources, path);
+  out.parsed = parse_file(sources, path, options);
   out.parse_seconds = since(start);
   return out;
 }

@@ -13,8 +13,8 @@ struct LoadedFile {
   ParseResult parsed;
   double parse_seconds = 0;
 };
-LoadedFile load_file(Sources& sources, const std::string& path);
-LoadedFile load_text(Sources& sources, const std::string& name, std::string text);
+LoadedFile load_file(Sources& sources, const std::string& path, const ParseOptions& options = {});
+LoadedFile load_text(Sources& sources, const std::string& name, std::string text, const ParseOptions& options = {});
 
 /// One world of a file, bound and planned.
 struct PlannedScene {
