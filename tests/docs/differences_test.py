@@ -382,6 +382,25 @@ class Differences(unittest.TestCase):
         self.assertEqual(self.render(text).shape, (8, 4, 3))
         self.assertEqual(self.render(text, "--cropwindow", "0", "1", "0", "0.25").shape, (2, 8, 3))
 
+    def test_files_of_objects_never_placed(self):
+        with open(os.path.join(self.folder, "tree.pbrt"), "w", encoding="utf-8") as f:
+            f.write('LightSource "distant" "rgb L" [2 2 2]\nNonsense\n')
+        text = scene('''
+          ObjectBegin "tree"
+            Include "tree.pbrt"
+          ObjectEnd
+          LightSource "distant" "rgb L" [1 1 1]
+          Translate 0 0 5
+          Shape "disk" "float radius" [9]''')
+        # Matte of Kd 0.5 facing a light of irradiance 1: 0.5 / pi. The file's light would make it three times that.
+        numpy.testing.assert_allclose(self.render(text), 0.5 / numpy.pi, rtol=1e-5)
+        loud = self.run_whit("s.pbrt", "--outfile", "loud.exr", "--display", "none")
+        self.assertEqual(loud.returncode, 0, loud.stderr)
+        self.assertIn("1 file of objects that are never placed was not read (whit explain lists it).", loud.stderr)
+        checked = self.run_whit("check", "s.pbrt")
+        self.assertEqual(checked.returncode, 1)
+        self.assertIn('tree.pbrt:2:1: error: unknown directive "Nonsense"', checked.stderr)
+
     def test_bump_maps_on_hair(self):
         hair = '''
           LightSource "point" "point from" [-2 1 -3] "rgb I" [9 9 9]

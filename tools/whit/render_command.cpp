@@ -197,6 +197,8 @@ class RenderJob {
     if (!world.media.empty() || !world.media_uses.empty()) {
       diagnostics.warning(world.world_begin, "participating media is not simulated", "the picture is made without");
     }
+    unread_.clear();
+    for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);
     if (int code = report(diagnostics); code != kDone) return code;
     if (!planned.bound.film.plugin) return kSceneError;
 
@@ -352,6 +354,9 @@ class RenderJob {
     say(fmt::format("{} samples per pixel, {} triangles, peak memory {}, invalid samples {}.", scene.samples_per_pixel,
                     count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
                     s.invalid_samples));
+    if (const size_t n = unread_.size(); n > 0)
+      say(fmt::format("{} file{} of objects that are never placed {} not read (whit explain lists {}).", n,
+                      n == 1 ? "" : "s", n == 1 ? "was" : "were", n == 1 ? "it" : "them"));
     if (settings_.stats) more_statistics(scene, s, textures);
     if (is_linear_format(output.main_file)) {
       say(fmt::format("linear:  {}", output.main_file));
@@ -386,6 +391,7 @@ class RenderJob {
   Sources sources_;
   Times times_;
   std::set<std::string> written_;  ///< Pictures of this file's worlds.
+  std::set<std::string> unread_;   ///< Files of objects that this world never places.
 };
 
 /// --cat and --toply.
