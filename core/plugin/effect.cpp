@@ -10,9 +10,9 @@ namespace {
 constexpr EffectInfo kInfos[] = {
     {"diffuse", "light scattered to all sides", "no diffuse lobes", "lobes evaluated for each light", "", 0, 12},
     {"glossy", "rough reflection and transmission", "no rough lobes", "lobes evaluated for each light", "", 0, 24},
-    {"reflection", "perfect mirrors", "no mirror rays", "mirror rays spawned, another round of rays",
+    {"reflection", "perfect mirrors", "no mirror rays", "mirror rays, traced in another round",
      "1 per bounce, drawn where a surface has two such lobes", 44, 24},
-    {"refraction", "perfectly clear boundaries", "no refracted rays", "refracted rays spawned, another round of rays",
+    {"refraction", "perfectly clear boundaries", "no refracted rays", "refracted rays, traced in another round",
      "1 per bounce, drawn where a surface has two such lobes", 44, 24},
     {"area-lights", "surfaces that emit", "nothing emits", "emission added; each emitter sampled",
      "2 per bounce and emitter", 0, 48},

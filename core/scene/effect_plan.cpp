@@ -110,7 +110,7 @@ class Planner {
     if (!is_off(Effect::Alpha)) visit_textures(*shape.plugin, shape.textures, false);
     if (animated(d.transform)) call_for({Effect::MotionBlur}, d.where, "moving " + d.plugin);
     if (emits) visit_emission(i, lights);
-    if (!unseen) visit_material(scene_.shape_material[i]);
+    if (!unseen) visit_material(scene_.shape_material[i], d.where);
   }
 
   bool emits_light(const ShapeDescription& d) const {
@@ -128,20 +128,25 @@ class Planner {
     if (lights && !is_curve) emitters_.push_back(&light);
   }
 
-  void visit_material(int index) {
+  /// A material, and a shape that wears it.
+  void visit_material(int index, SourcePos shape) {
     const auto m = static_cast<size_t>(index);
     if (plan_.material_live[m]) return;
     plan_.material_live[m] = 1;
     const auto& material = scene_.materials[m];
     if (!material.plugin) return;
-    const std::string what = m < description_.materials.size() ? description_.materials[m].plugin : "material";
-    call_for(material.plugin->effects(), material.where, what);
-    if (!material.plugin->bump.is_constant()) call_for({Effect::Bump}, material.where, "bumpmap");
+    // pbrt's default material is no statement, and what shapes override has the place of the one they wear.
+    const SourcePos where = m == 0 ? shape : material.where;
+    const std::string what = m == 0                              ? "the default material"
+                             : m < description_.materials.size() ? description_.materials[m].plugin
+                                                                 : "a material with overrides";
+    call_for(material.plugin->effects(), where, what);
+    if (!material.plugin->bump.is_constant()) call_for({Effect::Bump}, where, "bumpmap");
     for (const TextureUse& t : material.textures) {
       const bool read = t.parameter == "bumpmap" ? !is_off(Effect::Bump) : material.plugin->reads(t.parameter);
       if (read) visit_texture(t.texture, true);
     }
-    for (const int member : material.materials) visit_material(member);
+    for (const int member : material.materials) visit_material(member, shape);
   }
 
   /// Lights at infinity are also seen. All others are there for surfaces that scatter.

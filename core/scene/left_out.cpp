@@ -38,10 +38,15 @@ class Finder {
       const ParamSpec* spec = info ? info->find_param(p.name) : nullptr;
       if (!spec || !spec->is_file || p.strings().empty() || p.strings().front().empty()) continue;
       const std::string& name = p.strings().front();
-      std::error_code failed;  // Binding has reported a file that is not there.
-      const auto size = std::filesystem::file_size(std::filesystem::path(description_.folder) / name, failed);
-      files.push_back({name, failed ? 0 : static_cast<int64_t>(size)});
+      files.push_back({name, size_of(std::filesystem::path(description_.folder) / name)});
     }
+  }
+
+  /// In bytes; a file that is not there has been reported.
+  static int64_t size_of(const std::filesystem::path& path) {
+    std::error_code failed;
+    const auto size = std::filesystem::file_size(path, failed);
+    return failed ? 0 : static_cast<int64_t>(size);
   }
 
   LeftOut& add(const char* kind, const std::string& name, std::string reason, SourcePos where) {
@@ -79,7 +84,7 @@ class Finder {
     return shape.object >= 0 && !plan_.object_live[static_cast<size_t>(shape.object)];
   }
 
-  /// Objects with the files of their shapes.
+  /// Objects with the files of their shapes, and those that were to be included in them.
   void add_objects() {
     std::vector<uint8_t> placed(description_.objects.size());
     for (const auto& instance : description_.instances) placed[static_cast<size_t>(instance.object)] = 1;
@@ -93,6 +98,9 @@ class Finder {
     for (const ShapeDescription& shape : description_.shapes) {
       if (!is_in_left_out_object(shape)) continue;
       add_files(shape, "shape", found_[entry[static_cast<size_t>(shape.object)]].files);
+    }
+    for (const UnreadFile& file : description_.unread_files) {
+      found_[entry[static_cast<size_t>(file.object)]].files.push_back({file.path, size_of(file.path)});
     }
   }
 

@@ -57,58 +57,69 @@ Json describe(const PlannedScene& p, const Sources& sources) {
 
 std::string text(const Json& j, const char* key) { return j.contains(key) ? j[key].get<std::string>() : std::string(); }
 
-std::string causes_text(const Json& effect) {
-  if (!effect.contains("causes")) return {};
-  std::string out;
-  for (const Json& c : effect["causes"]) {
-    out += fmt::format("{}{} at {}", out.empty() ? "" : "; ", text(c, "what"), text(c, "where"));
-  }
+void print_causes(const Json& effect) {
+  if (!effect.contains("causes")) return;
+  for (const Json& c : effect["causes"]) fmt::print("      for {} at {}\n", text(c, "what"), text(c, "where"));
   const size_t more = effect["called_for_by"].get<size_t>() - effect["causes"].size();
-  return more > 0 ? out + fmt::format("; {} more", more) : out;
+  if (more > 0) fmt::print("      and for {} more\n", more);
 }
 
-/// What an effect adds: stages, sample dimensions, bytes.
-std::string additions_text(const Json& effect) {
-  std::string out = text(effect, "stages");
-  if (effect.contains("dimensions")) out += "; sample dimensions: " + text(effect, "dimensions");
-  const auto bytes = [&](const char* key, const char* of) {
-    if (effect.contains(key)) out += fmt::format("; {} bytes a {}", effect[key].get<int>(), of);
-  };
-  bytes("bytes_per_ray", "ray"), bytes("bytes_per_point", "point");
+/// ", 48 bytes a ray, 64 a point"
+std::string bytes_carried(const Json& effect) {
+  std::string out;
+  for (const auto& [key, of] : {std::pair("bytes_per_ray", "ray"), std::pair("bytes_per_point", "point")}) {
+    if (!effect.contains(key)) continue;
+    out += fmt::format(", {}{} a {}", effect[key].get<int>(), out.empty() ? " bytes" : "", of);
+  }
   return out;
 }
 
-void print_effects(const Json& effects) {
-  std::string absent;
+void print_on(const Json& effects) {
   fmt::print("on\n");
   for (const Json& e : effects) {
     if (!e["on"].get<bool>()) continue;
-    fmt::print("  {:<18} {}\n", text(e, "effect"), causes_text(e));
-    fmt::print("  {:<18} adds: {}\n", "", additions_text(e));
+    fmt::print("  {:<20}{}{}\n", text(e, "effect"), text(e, "stages"), bytes_carried(e));
+    if (e.contains("dimensions")) fmt::print("      sample dimensions: {}\n", text(e, "dimensions"));
+    print_causes(e);
   }
-  fmt::print("off\n");
-  for (const Json& e : effects) {
-    if (e["on"].get<bool>()) continue;
-    if (e.contains("causes"))
-      fmt::print("  {:<18} {} (for {})\n", text(e, "effect"), text(e, "why_off"), causes_text(e));
-    else absent += (absent.empty() ? "" : ", ") + text(e, "effect");
-  }
-  if (!absent.empty()) fmt::print("  nothing calls for  {}\n", absent);
 }
 
-std::string files_text(const Json& entry) {
-  if (!entry.contains("files")) return {};
-  constexpr size_t kShown = 3;
-  double bytes = 0;
-  std::string names;
-  const size_t n = entry["files"].size();
-  for (size_t i = 0; i < n; ++i) {
-    const Json& file = entry["files"][i];
-    bytes += file["bytes"].get<double>();
-    if (i < kShown) names += (i > 0 ? ", " : "") + text(file, "name");
+void print_off(const Json& effects) {
+  fmt::print("off\n");
+  std::string line = "  nothing calls for";
+  bool any = false;
+  for (const Json& e : effects) {
+    if (e["on"].get<bool>()) continue;
+    if (e.contains("causes")) {
+      fmt::print("  {:<20}{}\n", text(e, "effect"), text(e, "why_off"));
+      print_causes(e);
+      continue;
+    }
+    constexpr size_t kWidth = 100;
+    const std::string word = (any ? ", " : " ") + text(e, "effect");
+    if (line.size() + word.size() > kWidth) {
+      fmt::print("{},\n", line);
+      line = "     " + word.substr(1);
+    } else {
+      line += word;
+    }
+    any = true;
   }
-  if (n > kShown) names += fmt::format(" and {} more", n - kShown);
-  return fmt::format("; not read: {}, {}", names, bytes_text(bytes));
+  if (any) fmt::print("{}\n", line);
+}
+
+void print_files(const Json& entry) {
+  if (!entry.contains("files")) return;
+  constexpr size_t kShown = 3;
+  const size_t n = entry["files"].size();
+  for (size_t i = 0; i < std::min(n, kShown); ++i) {
+    const Json& file = entry["files"][i];
+    fmt::print("      not read: {}, {}\n", text(file, "name"), bytes_text(file["bytes"].get<double>()));
+  }
+  if (n <= kShown) return;
+  double bytes = 0;
+  for (size_t i = kShown; i < n; ++i) bytes += entry["files"][i]["bytes"].get<double>();
+  fmt::print("      and {} more files, {}\n", n - kShown, bytes_text(bytes));
 }
 
 /// Each kind's first few.
@@ -119,7 +130,8 @@ void print_left_out(const Json& left_out) {
   for (const Json& l : left_out) {
     const std::string kind = text(l, "kind");
     if (++seen[kind] > kShown) continue;
-    fmt::print("  {} \"{}\" at {}: {}{}\n", kind, text(l, "name"), text(l, "where"), text(l, "reason"), files_text(l));
+    fmt::print("  {} \"{}\" at {}: {}\n", kind, text(l, "name"), text(l, "where"), text(l, "reason"));
+    print_files(l);
   }
   for (const auto& [kind, count] : seen) {
     if (count > kShown) fmt::print("  and {} more of kind {} (--json lists all)\n", count - kShown, kind);
@@ -127,7 +139,8 @@ void print_left_out(const Json& left_out) {
 }
 
 void print_world(const Json& world) {
-  print_effects(world["effects"]);
+  print_on(world["effects"]);
+  print_off(world["effects"]);
   print_left_out(world["left_out"]);
   if (!world["not_simulated"].empty()) fmt::print("not simulated\n");
   for (const Json& i : world["not_simulated"]) fmt::print("  {} at {}\n", text(i, "what"), text(i, "where"));
