@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/batch/lanes.h"
+#include "core/plugin/light_reach.h"
 #include "core/plugin/param.h"
 
 namespace whit {
@@ -37,6 +38,8 @@ class Light : public Plugin {
   /// Density (solid angle) with which sample() would choose unit direction d from point p: for tests and
   /// multiple importance sampling. 0 for delta lights.
   virtual float pdf(const Vec3f& /*p*/, const Vec3f& /*d*/) const { return 0; }
+  /// Where sample() finds light. Asked after prepare(); the default rules nothing out.
+  virtual LightReach reach() const { return {}; }
   /// True when the light gives nothing anywhere (power 0), so that the plan drops it.
   virtual bool is_black() const { return false; }
 };

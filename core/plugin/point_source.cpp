@@ -24,6 +24,23 @@ bool PointSource::place(const PrepareContext& ctx, const Vec3d& at) {
   return true;
 }
 
+void PointSource::limit_to_cone(const Vec3d& axis, double cosine, double sine) {
+  const AffineMap& m = direction_to_light_;
+  cone_ = {position_, m.x, m.y, m.z, 1, axis, cosine, sine};
+  // Gershgorin's circles bound the eigenvalues of M M^T, the squared stretches.
+  const Vec3d x(m.x), y(m.y), z(m.z);
+  const double xy = std::abs(x.dot(y)), yz = std::abs(y.dot(z)), zx = std::abs(z.dot(x));
+  cone_->stretch = std::sqrt(std::max({x.length2() + xy + zx, y.length2() + xy + yz, z.length2() + yz + zx}));
+}
+
+LightReach PointSource::reach() const {
+  // The factors come from pictures that nobody has read yet.
+  constexpr float kBrightestPicture = 1e6f;
+  LightReach reach = reach_of_point(position_, intensity_ * kBrightestPicture, to_render_);
+  if (cone_) reach.cone = &*cone_;
+  return reach;
+}
+
 void PointSource::sample(const LightSamples& s) const {
   alignas(64) float storage[6][kBlock];
   const Vec3Lanes d{storage[0], storage[1], storage[2]};

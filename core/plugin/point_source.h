@@ -1,6 +1,8 @@
 // Lights at a point whose intensity depends on the direction: what spot, goniometric and projection share.
 #pragma once
 
+#include <optional>
+
 #include "core/plugin/light.h"
 #include "core/plugin/texture_mapping.h"
 
@@ -16,6 +18,7 @@ class PointSource : public Light {
   EffectSet effects() const override { return {Effect::DeltaLights}; }
   bool is_black() const override { return whit::is_black(I * scale); }
   void sample(const LightSamples& s) const final;
+  LightReach reach() const final;
 
  protected:
   /// The most lanes that factor() is called with.
@@ -24,6 +27,9 @@ class PointSource : public Light {
   /// Puts the light at a point of light space; call from prepare(). Returns false after reporting that light_to_world
   /// cannot be inverted.
   bool place(const PrepareContext& ctx, const Vec3d& at);
+  /// Says that factor() is 0 outside of a cone around a unit axis of light space; call after place(). The angle between
+  /// axis and edge is at most 180 degrees.
+  void limit_to_cone(const Vec3d& axis, double cosine, double sine);
   /// What the intensity is multiplied with in n directions from the light (light space, not of length 1; 0 at the light
   /// itself).
   virtual void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const = 0;
@@ -33,6 +39,7 @@ class PointSource : public Light {
   AffineMap direction_to_light_;  ///< Up to a positive factor.
   RGB intensity_{0.0f};
   float to_render_ = 1;  ///< Render lengths per world length.
+  std::optional<LightCone> cone_;
 };
 
 /// The parameters that all of them have.

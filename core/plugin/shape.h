@@ -149,6 +149,9 @@ class AnalyticShape : public Shape {
   /// outward: shadow rays to it then need not be tested against it.
   virtual bool cannot_shade_itself() const { return false; }
 
+  /// True when the shape lies in a plane, with one front.
+  virtual bool is_planar() const { return false; }
+
   /// The local geometry at hits; object space. Shapes write it for one point and let for_surface_points() loop.
   virtual void surfaces(SurfacePointLanes& s) const = 0;
   /// The same for one hit.

@@ -1,9 +1,11 @@
 // One batch of rays on its way through the stages: the renderer's side of core/plugin/integrator.h.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/plugin/integrator.h"
+#include "core/render/light_reach.h"
 #include "core/render/surface.h"
 #include "core/render/worker.h"
 
@@ -37,6 +39,7 @@ class Round final : public RayRound {
   void shade_runs();
   bool needs_numbers() const;
   SampleKeys make_keys() const;
+  bool leaves_dark(const SceneLight& light);
   void sample_emitter(const SceneLight& light, const LightSamples& samples) const;
   void sample_triangle(const SceneLight& light, const LightSamples& samples) const;
   void sample_analytic(const SceneLight& light, const LightSamples& samples) const;
@@ -71,6 +74,8 @@ class Round final : public RayRound {
   uint32_t* stream_ = nullptr;
   SampleKeys keys_;  ///< Of the points; empty when nothing is drawn for them.
   ShadingBatch points_;
+  std::optional<PointBounds> bounds_;  ///< Of the points, once a light has been compared with them.
+  std::optional<bool> finite_;         ///< are_finite(), once asked.
   std::vector<Run>& runs_;
 };
 

@@ -25,8 +25,12 @@ void Round::add_direct(int number) {
   const int n = hits_.n;
   if (std::none_of(runs_.begin(), runs_.end(), [](const Run& r) { return r.scatters; })) return;
   const StageScope stage(worker_.clock(), Stage::LightSampling);
-  ArenaScope scope(arena_);
   const SceneLight& light = scene_.lights[static_cast<size_t>(number)];
+  if (leaves_dark(light)) {
+    ++worker_.statistics.lights_skipped;
+    return;
+  }
+  ArenaScope scope(arena_);
   LightSamples samples;
   samples.n = n;
   samples.p = points_.p;
@@ -46,6 +50,16 @@ void Round::add_direct(int number) {
   const RGBLanes f = arena_.rgb(n);
   scatter(samples, f);
   add_unshadowed(light, samples, f);
+}
+
+/// Whether the light adds nothing to any point, as far as bounds can tell. Not while there is a log, which tells what
+/// became of every light.
+bool Round::leaves_dark(const SceneLight& light) {
+  if (!scene_.skip_lights || worker_.log || light.reach.from == LightReach::From::Anywhere) return false;
+  if (!bounds_) bounds_ = bounds_of(points_, runs_);
+  if (!cannot_reach(light.reach, *bounds_, points_)) return false;
+  if (!finite_) finite_ = are_finite(points_, runs_);
+  return *finite_;
 }
 
 /// What the lobes send to the camera of each sample's light: f |cos| times its radiance.

@@ -13,6 +13,7 @@
 #include "core/scene/alpha.h"
 #include "core/scene/bake.h"
 #include "core/scene/coincidence.h"
+#include "core/scene/emitter_reach.h"
 #include "core/scene/motion.h"
 #include "core/scene/scene.h"
 
@@ -513,6 +514,7 @@ class Builder {
       entry.dimension = scene_->light_dimensions;
       scene_->light_dimensions += 2;
     }
+    entry.reach = reach_of(*scene_, entry);
     scene_->lights.push_back(entry);
   }
 

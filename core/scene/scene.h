@@ -78,6 +78,7 @@ struct SceneLight {
   bool two_sided = false;
   bool is_delta = false;
   int dimension = -1;  ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
+  LightReach reach;
 };
 
 /// The numbers of the render that the command line may override.
@@ -110,6 +111,7 @@ struct Scene {
   std::vector<SceneInstance> instances;
   std::vector<Mat4d> instance_keys;
   std::vector<SceneLight> lights;
+  bool skip_lights = true;  ///< Leave lights out that cannot reach any point of a round. The picture is the same.
   std::vector<const Light*> environments;  ///< Lights that escaped rays see.
   std::vector<Mat4d> camera_keys;          ///< Camera to render space at evenly spaced times.
   double time_start = 0, time_end = 1;     ///< Times of the first and last key.

@@ -1,6 +1,9 @@
 // Light from one direction, the same everywhere, as from the sun seen as a point.
 // Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.4.
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/fastmath.h"
 #include "core/plugin/light.h"
 #include "core/plugin/registry.h"
@@ -31,6 +34,14 @@ class DistantLight final : public Light {
     to_light_ = Vec3f(direction);
     radiance_ = L * scale;
     return true;
+  }
+
+  LightReach reach() const override {
+    LightReach reach;
+    const float strongest = std::max({std::abs(radiance_.x), std::abs(radiance_.y), std::abs(radiance_.z)});
+    if (static_cast<double>(strongest) < LightReach::kStrongest) reach.from = LightReach::From::Direction;
+    reach.normal = to_light_;
+    return reach;
   }
 
   void sample(const LightSamples& s) const override {

@@ -26,6 +26,8 @@ class PointLight final : public Light {
     return true;
   }
 
+  LightReach reach() const override { return reach_of_point(position_, intensity_, to_render_); }
+
   void sample(const LightSamples& s) const override {
     const Vec3f position = position_;
     const RGB intensity = intensity_;

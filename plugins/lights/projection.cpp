@@ -22,7 +22,12 @@ class ProjectionLight final : public PointSource {
     const double half = std::tan(static_cast<double>(fov) * detail::kPiD / 360), aspect = map_.aspect();
     x_extent_ = static_cast<float>(half * std::max(aspect, 1.0));
     y_extent_ = static_cast<float>(half * std::max(1 / aspect, 1.0));
-    return place(ctx, {0, 0, 0});
+    if (!place(ctx, {0, 0, 0})) return false;
+    // The cone through the picture's corners.
+    const double corner = std::hypot(static_cast<double>(x_extent_), static_cast<double>(y_extent_));
+    const double slant = std::hypot(1.0, corner);
+    limit_to_cone({0, 0, 1}, 1 / slant, corner / slant);
+    return true;
   }
 
  private:

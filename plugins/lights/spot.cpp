@@ -23,7 +23,11 @@ class SpotLight final : public PointSource {
     axis_ = Vec3f((to.value - from.value).normalized());
     const auto angle = static_cast<double>(coneangle);
     edge_ = one_minus_cos(angle), full_ = one_minus_cos(angle - static_cast<double>(conedeltaangle));
-    return place(ctx, from.value);
+    if (!place(ctx, from.value)) return false;
+    // Of the edge that factor() compares with, whatever angle it came from.
+    const auto edge = static_cast<double>(edge_);
+    limit_to_cone(Vec3d(axis_), 1 - edge, std::sqrt(edge * (2 - edge)));
+    return true;
   }
 
  private:

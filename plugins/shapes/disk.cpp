@@ -40,6 +40,8 @@ struct Disk final : AnalyticShape {
 
   bool cannot_shade_itself() const override { return true; }
 
+  bool is_planar() const override { return true; }
+
   void intersect(const ObjectRays& rays) const override {
     for (int i = 0; i < rays.n; ++i) {
       // A ray in the disk's plane divides by 0; the infinity or NaN fails the next comparison.

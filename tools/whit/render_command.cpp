@@ -382,6 +382,8 @@ class RenderJob {
                     count_text(s.footprints), count_text(s.passing_rays)));
     say(fmt::format("{} time samples, {} lens samples, {} alpha tests, {} texture values.", count_text(s.time_samples),
                     count_text(s.lens_samples), count_text(s.alpha_tests), count_text(s.texture_values)));
+    say(fmt::format("{} times a light could reach none of a batch of points, and was skipped.",
+                    count_text(s.lights_skipped)));
     say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
                     t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
   }
