@@ -35,7 +35,7 @@ void Round::intersect() {
   ray_hits_ = {arena_.floats(count_),         arena_.alloc<int32_t>(count_), arena_.alloc<uint32_t>(count_),
                arena_.alloc<int32_t>(count_), arena_.floats(count_),         arena_.floats(count_)};
   const float* time = nullptr;
-  if (worker_.chunk.time) {
+  if (scene_.plan.live(Effect::MotionBlur)) {
     float* t = arena_.floats(count_);
     gather(rays_.slot + first_, count_, worker_.chunk.time, t);
     time = t;
@@ -149,7 +149,7 @@ void Round::gather_hits(const int32_t* order, int n) {
     hits_.shape[i] = ray_hits_.shape[from], hits_.instance[i] = ray_hits_.instance[from];
     hits_.prim[i] = ray_hits_.prim[from];
   });
-  if (ray_time_) {
+  if (scene_.plan.live(Effect::MotionBlur)) {
     float* time = arena_.floats(n);
     gather(order, n, ray_time_, time);
     hits_.time = time;

@@ -102,7 +102,7 @@ void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples,
     t_max[i] = samples.distance[from] * kShadowShortening;
   });
   float* time = nullptr;
-  if (hits_.time) {
+  if (scene_.plan.live(Effect::MotionBlur)) {
     time = arena_.floats(n);
     gather(lanes, n, hits_.time, time);
   }

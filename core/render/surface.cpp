@@ -222,7 +222,7 @@ bool has_instances(const Scene& scene) {
 Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   if (h.instance[i] < 0) return Mat4d();
   const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
-  return interpolate_keys(scene.keys_of(instance), h.time ? h.time[i] : 0).inverse();
+  return interpolate_keys(scene.keys_of(instance), h.time_of(i)).inverse();
 }
 
 /// The unit normal of derivatives that m has transformed. pbrt flips the object's normal and then transforms it, so the
@@ -381,7 +381,7 @@ void place_surfaces(const Scene& scene, const SurfaceHits& h, const ShadingBatch
   for (int i = 0; i < s.n; ++i) {
     if (h.instance[i] < 0) continue;
     const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
-    const Mat4d m = interpolate_keys(scene.keys_of(instance), h.time ? h.time[i] : 0), nm = normal_matrix(m);
+    const Mat4d m = interpolate_keys(scene.keys_of(instance), h.time_of(i)), nm = normal_matrix(m);
     const Vec3f local = s.p[i], known = s.p_error[i];
     // Embree meets the object with rays that it takes there in floats, however well the point itself is known.
     const auto reached = [](float error, float at) { return max_of(error, gamma_bound(3) * std::abs(at)); };

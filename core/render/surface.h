@@ -17,6 +17,7 @@ struct SurfaceHits {
   const float* time = nullptr;       ///< In [0,1] over the transform times; null when nothing moves.
   Vec3Lanes rx_o, rx_d, ry_o, ry_d;  ///< Null when no effect needs differentials.
 
+  float time_of(int i) const { return compiled_in(Effect::MotionBlur) && time ? time[i] : 0.0f; }
   bool has_differentials() const { return kKnowsDifferentials && rx_o; }
 };
 

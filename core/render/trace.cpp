@@ -120,7 +120,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
     c.film_x[i] += static_cast<float>(c.px[i]);
     c.film_y[i] += static_cast<float>(c.py[i]);
   });
-  if (c.time) sample_times(worker, keys);
+  if (scene.plan.live(Effect::MotionBlur)) sample_times(worker, keys);
 
   RayList& rays = worker.level(0);
   rays.clear();
@@ -133,7 +133,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   out.o = rays.o, out.d = rays.d, out.weight = c.ray_weight;
   out.rx_o = rays.rx_o, out.rx_d = rays.rx_d, out.ry_o = rays.ry_o, out.ry_d = rays.ry_d;
   scene.camera().generate(out);
-  if (scene.camera_keys.size() == 1) {
+  if (scene.camera_keys.size() == 1 || !compiled_in(Effect::MotionBlur)) {
     place_rays_still(scene.camera_keys.front(), out);
   } else {
     place_rays(scene, c.time, out);

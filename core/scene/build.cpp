@@ -76,6 +76,7 @@ class Builder {
       : options_(options), textures_(textures), diagnostics_(diagnostics), scene_(std::make_unique<Scene>()) {
     scene_->bound = std::move(bound);
     scene_->plan = std::move(plan);
+    scene_->skip_lights = !scene_->plan.everything_on;
   }
 
   std::unique_ptr<Scene> run() {

@@ -425,13 +425,14 @@ class Commands(Case):
         self.assertIn("1 error, 1 warning", err)
 
     def test_explain(self):
-        self.assertRegex(self.good("explain", "a scene.pbrt"), r"(?m)^delta light +on +point at a scene.pbrt:6:3$")
+        said = self.good("explain", "a scene.pbrt")
+        self.assertRegex(said, r"(?m)^  delta-lights .*\n      for point at a scene.pbrt:6:3$")
         worlds = json.loads(self.good("explain", "--json", stdin=SCENE + SCENE))["worlds"]
         self.assertEqual(len(worlds), 2)
-        self.assertEqual([e["effect"] for e in worlds[0]["effects"] if e["on"]], ["delta light"])
+        self.assertEqual([e["effect"] for e in worlds[0]["effects"] if e["on"]], ["diffuse", "delta-lights", "shadows"])
         unused = SCENE.replace("WorldBegin", 'WorldBegin\n  Texture "t" "spectrum" "checkerboard"')
         self.write("unused.pbrt", unused)
-        self.assertIn('left out: texture "t" at unused.pbrt:6:3', self.good("explain", "unused.pbrt"))
+        self.assertIn('left out\n  texture "t" at unused.pbrt:6:3: no visible surface uses it\n', self.good("explain", "unused.pbrt"))
 
     def test_diff(self):
         # Samples of the border's pixels miss: two pictures of the empty scene are equal whatever the seed.
