@@ -132,7 +132,8 @@ class Sources::File {
   bool from_disk = false;
 
  private:
-  static constexpr uint64_t kBlock = 1 << 20;
+  /// Small, because whole lists of places are asked for; a thousandth of the text in memory.
+  static constexpr uint64_t kBlock = 1 << 13;
 
   std::string owned_;
   std::string_view text_;

@@ -8,7 +8,7 @@ namespace whit {
 void RayList::reserve(int capacity) {
   if (capacity <= capacity_) return;
   capacity = std::max((capacity + 15) & ~15, 2 * capacity_);
-  const int fields = 11 + (with_differentials_ ? 12 : 0);
+  const int fields = kFields + (with_differentials_ ? kDifferentialFields : 0);
   std::vector<float> grown(static_cast<size_t>(fields) * static_cast<size_t>(capacity) + 16);
   const auto base = [](std::vector<float>& s) {
     return reinterpret_cast<float*>((reinterpret_cast<uintptr_t>(s.data()) + 63) & ~uintptr_t{63});

@@ -22,6 +22,9 @@ class RayList {
   RayList(RayList&&) = default;
   RayList& operator=(RayList&&) = default;
 
+  /// Floats, or integers of their size, that a ray takes, and those that its differentials take.
+  static constexpr int kFields = 11, kDifferentialFields = 12;
+
   /// Makes room for `capacity` rays, keeping the first n.
   void reserve(int capacity);
   void clear() { n = 0; }

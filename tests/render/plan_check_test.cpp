@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "core/render/ray_list.h"
 #include "tests/hard/render_text.h"
 
 namespace whit {
@@ -71,6 +72,15 @@ TEST(PlanCheck, WhatIsNotCalledForIsNotDoneAndWouldChangeNoBit) {
   }
   // A counter that never counts would pass all this.
   for (const auto& [what, scenes_with] : with_work) EXPECT_GT(scenes_with, 0) << what;
+}
+
+TEST(PlanCheck, ExplainTellsTheBytesOfARay) {
+  for (const Effect e : {Effect::Reflection, Effect::Refraction}) {
+    EXPECT_EQ(effect_info(e).ray_bytes, 4 * RayList::kFields);
+  }
+  for (const Effect e : {Effect::TextureFiltering, Effect::Bump}) {
+    EXPECT_EQ(effect_info(e).ray_bytes, 4 * RayList::kDifferentialFields);
+  }
 }
 
 }  // namespace

@@ -157,6 +157,7 @@ class RenderJob {
   int run() {
     LoadedFile file = load_file(sources_, path_);
     times_.parse = file.parse_seconds;
+    parsed_memory_ = resident_memory();
     // A file with mistakes is reported whole: also what planning would have said of it.
     const bool mistaken = file.parsed.diagnostics.has_errors();
     const Diagnostics found = mistaken ? all_problems(file, sources_) : file.parsed.diagnostics;
@@ -372,9 +373,9 @@ class RenderJob {
     const BuildSeconds& b = scene.build_seconds;
     say(fmt::format(
         "ready to trace after {}: geometry read in {}, textures and materials prepared in {}, geometry moved to "
-        "render space in {}, ray tracer built in {}.",
+        "render space in {}, ray tracer built in {}; {} resident after parsing.",
         duration_text(times_.parse + times_.plan + times_.build), duration_text(b.read), duration_text(b.prepare),
-        duration_text(b.bake), duration_text(b.accelerate)));
+        duration_text(b.bake), duration_text(b.accelerate), bytes_text(parsed_memory_)));
     say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
                     bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(),
                     scene.instances.size(), scene.lights.size()));
@@ -392,6 +393,7 @@ class RenderJob {
   const std::string path_;
   Sources sources_;
   Times times_;
+  double parsed_memory_ = 0;       ///< Resident after parsing, in bytes.
   std::set<std::string> written_;  ///< Pictures of this file's worlds.
   std::set<std::string> unread_;   ///< Files of objects that this world never places.
 };

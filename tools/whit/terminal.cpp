@@ -132,12 +132,24 @@ std::string count_text(double count) {
   return fmt::format("{:.2f} G", count / 1e9);
 }
 
-double peak_memory() {
-  // Not getrusage() where this exists: that begins with what the parent had when it started the program.
+namespace {
+
+/// A line of /proc/self/status, in bytes; 0 where there is none.
+double memory_status(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) * 1024;
+    if (line.rfind(key, 0) == 0) return std::stod(line.substr(key.size())) * 1024;
   }
+  return 0;
+}
+
+}  // namespace
+
+double resident_memory() { return memory_status("VmRSS:"); }
+
+double peak_memory() {
+  // Not getrusage() where this exists: that begins with what the parent had when it started the program.
+  if (const double peak = memory_status("VmHWM:"); peak > 0) return peak;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1024;

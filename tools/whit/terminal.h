@@ -51,7 +51,8 @@ std::string bytes_text(double bytes);
 /// "13.5 M".
 std::string count_text(double count);
 
-/// The largest resident size of this process so far, in bytes.
+/// The resident size of this process in bytes, 0 where it is not known, and the largest so far.
+double resident_memory();
 double peak_memory();
 
 }  // namespace whit
