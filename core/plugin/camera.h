@@ -32,7 +32,9 @@ class Camera : public Plugin {
   FilmGeometry film;
   float shutter_open = 0, shutter_close = 1;  ///< Times; transforms of the scene run from time_start to time_end.
 
+  /// Whether rays start at sampled positions of a lens: depth of field.
   virtual bool needs_lens() const { return false; }
+  EffectSet effects() const override { return needs_lens() ? EffectSet{Effect::DepthOfField} : EffectSet{}; }
   virtual void generate(const CameraRays& rays) const = 0;
 };
 

@@ -43,7 +43,6 @@ class UniformRadiance final : public DirectionalRadiance {
 class EnvironmentLight : public Light {
  public:
   bool is_environment() const override { return true; }
-  EffectSet effects() const override { return {Effect::EnvironmentLights}; }
 
   void sample(const LightSamples& s) const override;
   void add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out) const override;

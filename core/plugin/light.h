@@ -27,6 +27,12 @@ class Light : public Plugin {
   /// Light-to-world, set by the builder before prepare().
   Mat4d light_to_world;
 
+  /// By what it says below: which lights go when --without switches a kind of them off.
+  EffectSet effects() const override {
+    if (is_environment()) return {Effect::EnvironmentLights};
+    return {is_delta() ? Effect::DeltaLights : Effect::AreaLights};
+  }
+
   /// Delta lights need no random numbers.
   virtual bool is_delta() const { return false; }
   virtual void sample(const LightSamples& s) const = 0;

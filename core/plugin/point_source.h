@@ -15,7 +15,6 @@ class PointSource : public Light {
   RGB I{1.0f}, scale{1.0f};
 
   bool is_delta() const override { return true; }
-  EffectSet effects() const override { return {Effect::DeltaLights}; }
   bool is_black() const override { return whit::is_black(I * scale); }
   void sample(const LightSamples& s) const final;
   LightReach reach() const final;

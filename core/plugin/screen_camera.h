@@ -30,7 +30,6 @@ class ScreenCamera : public Camera {
       d.error(screen_window.where, "\"screenwindow\" has no area");
     }
   }
-  EffectSet effects() const override { return needs_lens() ? EffectSet{Effect::DepthOfField} : EffectSet{}; }
   bool needs_lens() const override { return lens_radius > 0; }
 
  protected:

@@ -34,6 +34,9 @@ class Texture : public Plugin {
   /// The CTM at the Texture statement, set by the builder before prepare(): where non-uv mappings live.
   Mat4d texture_to_world;
 
+  /// Filtering, for a texture that does not say: one that ignores the footprint calls for nothing.
+  EffectSet effects() const override { return {Effect::TextureFiltering}; }
+
   /// Writes the texture's value at each of the s.n points to out[0 .. s.n).
   virtual void evaluate(const ShadingBatch& s, const Lanes& out) const = 0;
 

@@ -12,7 +12,6 @@ namespace whit {
 template <class T>
 class NoiseTexture : public Texture<T> {
  public:
-  EffectSet effects() const override { return {Effect::TextureFiltering}; }
   bool prepare(const PrepareContext& ctx) override {
     map_ = mapping_3d(this->texture_to_world, ctx.space);
     return true;

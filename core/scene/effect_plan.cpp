@@ -134,7 +134,8 @@ class Planner {
     if (plan_.material_live[m]) return;
     plan_.material_live[m] = 1;
     const auto& material = scene_.materials[m];
-    if (!material.plugin) return;
+    // Where a statement is wrong and --keep-going goes on, the default material is shown.
+    if (!material.plugin) return m == 0 ? void() : visit_material(0, shape);
     // pbrt's default material is no statement, and what shapes override has the place of the one they wear.
     const SourcePos where = m == 0 ? shape : material.where;
     const std::string what = m == 0                              ? "the default material"

@@ -43,7 +43,8 @@ struct EffectPlan {
   bool everything_on = false;  ///< PlanOptions::everything_on.
   std::array<EffectUse, kEffects> uses;
 
-  // Which statements of the SceneDescription the picture needs.
+  // Which statements of the SceneDescription the picture needs: not 0. (What else the number says of a texture is the
+  // planner's.)
   std::vector<uint8_t> object_live, shape_live, texture_live, light_live;
   std::vector<uint8_t> material_live;  ///< Index of BoundScene::materials.
   bool direct_light = false;           ///< A surface scatters, and a light can be sampled: there is direct light.

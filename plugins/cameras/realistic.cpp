@@ -221,7 +221,6 @@ class Realistic final : public Camera {
   bool simpleweighting = true;
 
   bool needs_lens() const override { return true; }
-  EffectSet effects() const override { return {Effect::DepthOfField}; }
 
   void check(Diagnostics& d, SourcePos statement) override {
     if (lensfile.empty()) d.error(statement, "the realistic camera needs a \"string lensfile\"");

@@ -15,7 +15,6 @@ class Diffuse final : public AreaLight {
 
   RGB radiance() const override { return L * scale; }
   bool two_sided() const override { return twosided; }
-  EffectSet effects() const override { return is_black(radiance()) ? EffectSet{} : EffectSet{Effect::AreaLights}; }
 };
 
 const Register<Diffuse> diffuse{

@@ -17,7 +17,6 @@ class DistantLight final : public Light {
   Point from, to;  ///< Light space; the light travels from `from` to `to`.
 
   bool is_delta() const override { return true; }
-  EffectSet effects() const override { return {Effect::DeltaLights}; }
   bool is_black() const override { return whit::is_black(L * scale); }
 
   void check(Diagnostics& d, SourcePos statement) override {

@@ -14,7 +14,6 @@ class PointLight final : public Light {
   Point from;  ///< World space, from the origin of light space.
 
   bool is_delta() const override { return true; }
-  EffectSet effects() const override { return {Effect::DeltaLights}; }
   bool is_black() const override { return whit::is_black(I * scale); }
 
   bool prepare(const PrepareContext& ctx) override {

@@ -15,6 +15,7 @@ class Bilerp : public Texture2D<T> {
     if (v00 == v01 && v00 == v10 && v00 == v11) return v00;
     return std::nullopt;
   }
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     const ArenaScope scratch(*s.arena);
     const MappedPoints m = this->map_.map(s);

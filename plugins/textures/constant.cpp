@@ -10,6 +10,7 @@ class Constant : public Texture<T> {
   T value{};
 
   std::optional<T> constant() const override { return value; }
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     for_lanes(s.n, [&](int i) { ValueLanes<T>::set(out, i, value); });
   }

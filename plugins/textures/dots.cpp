@@ -26,6 +26,7 @@ class Dots : public Texture2D<T> {
     if (inside.is_constant() && outside.is_constant() && inside.value() == outside.value()) return inside.value();
     return std::nullopt;
   }
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     const ArenaScope scratch(*s.arena);
     const MappedPoints m = this->map_.map(s);

@@ -21,7 +21,6 @@ class ImageMap : public Texture2D<T> {
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
   }
-  EffectSet effects() const override { return {Effect::TextureFiltering}; }
 
   bool prepare(const PrepareContext& ctx) override {
     if (!begins_like_a_picture(filename.path)) {

@@ -19,6 +19,7 @@ class Mix : public Texture<T> {
       return blend(tex1.value(), tex2.value(), amount.value());
     return std::nullopt;
   }
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     const ArenaScope scratch(*s.arena);
     blend<T>(s.n, tex1(s), tex2(s), amount(s), out);

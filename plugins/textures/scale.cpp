@@ -14,6 +14,7 @@ class Scale : public Texture<T> {
     if (tex1.is_constant() && tex2.is_constant()) return tex1.value() * tex2.value();
     return std::nullopt;
   }
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     const ArenaScope scratch(*s.arena);
     const auto a = tex1(s), b = tex2(s);

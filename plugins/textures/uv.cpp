@@ -9,6 +9,7 @@ namespace {
 
 class Uv : public Texture2D<RGB> {
  public:
+  EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const RGBLanes& out) const override {
     const ArenaScope scratch(*s.arena);
     const MappedPoints m = map_.map(s);

@@ -126,7 +126,6 @@ TEST(Lights, EffectsAndBlackness) {
   ASSERT_TRUE(area.silent());
   EXPECT_EQ(area->radiance(), RGB(2, 4, 6));
   EXPECT_TRUE(area->two_sided());
-  EXPECT_TRUE(area->effects().has(Effect::AreaLights));
 }
 
 // --- Lights all around.

@@ -160,6 +160,14 @@ TEST(EffectPlan, EachEffectCanBeSwitchedOff) {
   });
 }
 
+TEST(EffectPlan, AWrongMaterialIsPlannedAsTheDefaultOneItIsShownAs) {
+  const std::string text =
+      "WorldBegin Material \"glass\" \"float index\" -1 Shape \"sphere\" LightSource \"point\" WorldEnd";
+  const Planned planned(text, Planned::Warnings::Allowed);
+  ASSERT_TRUE(planned.warnings.has_errors());
+  EXPECT_EQ(names_of(planned.plan.needed), (Effects{"diffuse", "delta-lights", "shadows"}));
+}
+
 TEST(EffectPlan, NamesAreReadBack) {
   std::string unknown;
   EXPECT_EQ(parse_effects("bump,motion-blur", unknown), (EffectSet{Effect::Bump, Effect::MotionBlur}));
