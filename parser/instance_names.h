@@ -24,7 +24,8 @@ using InstanceNames = std::unordered_set<std::string>;
 /// but parts of the object, and are not looked into: that they need not be read is the purpose.
 /// Nothing when the text leaves a doubt: a file that cannot be opened, a string or list that is not closed, objects that
 /// do not end where they should, no WorldEnd.
-/// In text with mistakes of syntax the parser may pass over statements that count here, a WorldEnd for one.
+/// In text with mistakes of syntax the parser may pass over statements that count here, a WorldEnd for one. Where that, or
+/// a file that is more than a part of its object, makes the answer wrong, parsing begins again and reads everything.
 /// Takes time linear in the text, a small part of that for parsing it. Large files are released behind the look ahead.
 std::optional<InstanceNames> names_of_instances(Sources& sources, const std::string& folder,
                                                 const std::vector<ReadingPlace>& open);

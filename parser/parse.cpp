@@ -106,8 +106,21 @@ class FileReader {
   std::optional<InstanceNames> placed_;  ///< The objects placed behind the world's first Include in an object.
 };
 
-void parse(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options,
-           ParseResult& result) {
+/// True when leaving files unread was, or may have been, a mistake: an object they belong to is placed after all, or
+/// something is wrong that may be right with them.
+bool must_read_all(const ParseResult& result) {
+  return std::any_of(result.scenes.begin(), result.scenes.end(), [&](const SceneDescription& world) {
+    if (world.unread_files.empty()) return false;
+    std::vector<bool> incomplete(world.objects.size());
+    for (const UnreadFile& file : world.unread_files) incomplete[static_cast<size_t>(file.object)] = true;
+    return result.diagnostics.has_errors() ||
+           std::any_of(world.instances.begin(), world.instances.end(),
+                       [&](const auto& instance) { return incomplete[static_cast<size_t>(instance.object)]; });
+  });
+}
+
+ParseResult parse_once(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options) {
+  ParseResult result;
   Reporter reporter(result.diagnostics);
   if (check_is_scene(sources, file, reporter)) {
     SceneBuilder builder(sources, reporter, absolute(folder));
@@ -116,6 +129,13 @@ void parse(Sources& sources, uint32_t file, const std::string& folder, const Par
     result.scenes = builder.take_scenes();
   }
   reporter.finish();
+  return result;
+}
+
+ParseResult parse(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options) {
+  ParseResult result = parse_once(sources, file, folder, options);
+  if (must_read_all(result)) result = parse_once(sources, file, folder, {.read_unplaced = true});
+  return result;
 }
 
 }  // namespace
@@ -128,15 +148,12 @@ ParseResult parse_file(Sources& sources, const std::string& path, const ParseOpt
     result.diagnostics.file_error({}, "cannot open " + in_quotes(path) + ": " + problem);
     return result;
   }
-  parse(sources, *file, fs::path(path).parent_path().string(), options, result);
-  return result;
+  return parse(sources, *file, fs::path(path).parent_path().string(), options);
 }
 
 ParseResult parse_text(Sources& sources, std::string name, std::string text, std::string folder,
                        const ParseOptions& options) {
-  ParseResult result;
-  parse(sources, sources.add_text(std::move(name), std::move(text)), folder, options, result);
-  return result;
+  return parse(sources, sources.add_text(std::move(name), std::move(text)), folder, options);
 }
 
 }  // namespace whit

@@ -110,6 +110,7 @@ struct SceneDescription {
   std::vector<UnreadFile> unread_files;
   std::vector<Entity> media;          ///< MakeNamedMedium: parsed, not simulated.
   std::vector<SourcePos> media_uses;  ///< MediumInterface statements.
+  bool has_media() const { return !media.empty() || !media_uses.empty(); }
 
   std::string folder;  ///< Folder of the main file, absolute: relative asset paths resolve against it.
   SourcePos world_begin;

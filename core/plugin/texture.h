@@ -44,6 +44,13 @@ class Texture : public Plugin {
   virtual std::optional<T> constant() const { return std::nullopt; }
 };
 
+/// Whether a texture of floats or colours is the same everywhere, so that what uses it holds the value.
+inline bool is_folded(const Plugin& texture) {
+  if (const auto* floats = dynamic_cast<const Texture<float>*>(&texture)) return floats->constant().has_value();
+  const auto* colours = dynamic_cast<const Texture<RGB>*>(&texture);
+  return colours && colours->constant().has_value();
+}
+
 /// A parameter that is a constant or a texture. Textures that turn out constant have folded into constants.
 template <class T>
 class Tex {

@@ -452,7 +452,7 @@ void compute_footprints(const SurfaceHits& h, const ShadingBatch& s, const Geome
   });
 }
 
-ShadingBatch allocate(const SurfaceHits& h, Arena& arena) {
+ShadingBatch allocate(const SurfaceHits& h, bool bumps, Arena& arena) {
   ShadingBatch s;
   s.n = h.n;
   s.arena = &arena;
@@ -460,8 +460,8 @@ ShadingBatch allocate(const SurfaceHits& h, Arena& arena) {
   s.ng = arena.vec3(h.n), s.ns = arena.vec3(h.n), s.dpdu = arena.vec3(h.n), s.dpdv = arena.vec3(h.n);
   s.u = arena.floats(h.n), s.v = arena.floats(h.n);
   s.flips = arena.alloc<uint8_t>(h.n);
+  if (bumps || h.has_differentials()) s.dndu = arena.vec3(h.n), s.dndv = arena.vec3(h.n);
   if (h.has_differentials()) {
-    s.dndu = arena.vec3(h.n), s.dndv = arena.vec3(h.n);
     s.dudx = arena.floats(h.n), s.dvdx = arena.floats(h.n), s.dudy = arena.floats(h.n), s.dvdy = arena.floats(h.n);
     s.dpdx = arena.vec3(h.n), s.dpdy = arena.vec3(h.n);
   }
@@ -471,7 +471,7 @@ ShadingBatch allocate(const SurfaceHits& h, Arena& arena) {
 }  // namespace
 
 ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& arena) {
-  const ShadingBatch s = allocate(h, arena);
+  const ShadingBatch s = allocate(h, scene.plan.live(Effect::Bump), arena);
   const GeometricPartials g{arena.vec3(h.n), arena.vec3(h.n)};
   for (int i = 0; i < h.n; ++i) s.flips[i] = scene.shapes[static_cast<size_t>(h.shape[i])].flips;
   for_lanes(h.n, [&](int i) { s.wo.set(i, -h.d[i]); });

@@ -13,7 +13,8 @@
 
 namespace whit {
 
-/// Which sample dimension serves what. Dimensions exist only for live effects.
+/// Which sample dimension serves what. Dimensions are drawn only for live effects, and exist only for them, but for the
+/// two of a bounce that are kept for choices between specular lobes.
 struct DimensionLayout {
   int time = -1;         ///< One dimension; -1 when nothing moves.
   int lens = -1;         ///< Two dimensions; -1 for a pinhole.

@@ -55,7 +55,8 @@ class Binder {
     ctx.statement_name = name;
     ctx.folder = description_.folder;
     ctx.value_position = value_position_;
-    ctx.with_textures = with_textures_;
+    // What a texture is made of is its own business, also where nobody is to use it.
+    ctx.with_textures = with_textures_ || binding_textures_;
     ctx.float_texture = [this, used_textures](int i, const std::string& parameter) {
       if (used_textures) used_textures->push_back({parameter, i});
       return std::dynamic_pointer_cast<Texture<float>>(scene_.textures[static_cast<size_t>(i)].plugin);
@@ -173,6 +174,7 @@ class Binder {
   }
 
   void bind_textures() {
+    binding_textures_ = true;
     for (const auto& t : description_.textures) {
       scene_.textures.push_back(
           bind_entity<Plugin>(t, t.spectrum ? "spectrum texture" : "float texture", {Severity::Error, nullptr, ""}));
@@ -181,6 +183,7 @@ class Binder {
       if (auto f = std::dynamic_pointer_cast<Texture<float>>(plugin)) f->texture_to_world = to_world;
       if (auto s = std::dynamic_pointer_cast<Texture<RGB>>(plugin)) s->texture_to_world = to_world;
     }
+    binding_textures_ = false;
   }
 
   void bind_materials() {
@@ -255,6 +258,7 @@ class Binder {
   const ValuePosition& value_position_;
   Diagnostics& diagnostics_;
   const bool with_textures_;
+  bool binding_textures_ = false;
   BoundScene scene_;
 };
 

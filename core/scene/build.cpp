@@ -358,7 +358,8 @@ class Builder {
     std::vector<std::unique_ptr<AlphaTest>> tests(shapes.size());
     std::vector<bool> has_alpha(shapes.size());
     for (size_t i = 0; i < shapes.size(); ++i) {
-      has_alpha[i] = plugins_[first + i]->is_cut_out() && scene_->plan.live(Effect::Alpha);
+      if (!scene_->plan.live(Effect::Alpha)) continue;
+      has_alpha[i] = plugins_[first + i]->is_cut_out();
       if (!has_alpha[i] && !scene_->plan.everything_on) continue;
       tests[i] = make_alpha_test(shapes[i], *plugins_[first + i], group.space.to_world() * scene_->space.from_world());
     }

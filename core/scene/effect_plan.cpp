@@ -5,13 +5,6 @@
 namespace whit {
 namespace {
 
-/// Whether a texture has the same value everywhere, so that nobody evaluates it: parameters hold the value.
-bool is_folded(const Plugin& texture) {
-  if (const auto* t = dynamic_cast<const Texture<float>*>(&texture)) return t->constant().has_value();
-  const auto* t = dynamic_cast<const Texture<RGB>*>(&texture);
-  return t && t->constant().has_value();
-}
-
 class Planner {
  public:
   Planner(const BoundScene& scene, const PlanOptions& options) : scene_(scene), description_(*scene.description) {
@@ -25,6 +18,7 @@ class Planner {
     plan_.texture_live.assign(description_.textures.size(), 0);
     plan_.light_live.assign(description_.lights.size(), 0);
     plan_.material_live.assign(scene_.materials.size(), 0);
+    named_light_.assign(description_.area_lights.size(), 0);
     place_instances();
     for (size_t i = 0; i < scene_.shapes.size(); ++i) visit_shape(i);
     scatters_ = wants(Effect::Diffuse) || wants(Effect::Glossy);
@@ -99,10 +93,10 @@ class Planner {
       call_for({Effect::Interfaces}, scene_.materials[material].where, "none");
       return;
     }
-    const bool emits = emits_light(d);
+    const bool emits = emits_light(d) && !moves(d.transform);
     // A constant alpha of 0 is a shape that is not there, or that lights unseen.
     const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0 && !is_off(Effect::Alpha);
-    const bool lights = emits && !is_off(Effect::AreaLights) && d.object < 0 && !moves(d.transform);
+    const bool lights = emits && !is_off(Effect::AreaLights) && d.object < 0;
     if (unseen && !lights) return;
     plan_.shape_live[i] = 1;
     call_for(shape.plugin->effects(), d.where, d.plugin);
@@ -119,13 +113,15 @@ class Planner {
     return light && !is_black(light->radiance());
   }
 
-  /// A surface that emits. `lights`: it stands in the world and does not move, so that it also lights others.
+  /// A surface that emits, which none does that moves, as in pbrt-v3. `lights`: it stands in the world, so that it also
+  /// lights others.
   void visit_emission(size_t i, bool lights) {
     const ShapeDescription& d = description_.shapes[i];
     const Entity& light = description_.area_lights[static_cast<size_t>(d.area_light)];
-    call_for({Effect::AreaLights}, light.where, light.plugin);
+    if (!named_light_[static_cast<size_t>(d.area_light)]++) call_for({Effect::AreaLights}, light.where, light.plugin);
     const bool is_curve = dynamic_cast<const CurveShape*>(scene_.shapes[i].plugin.get()) != nullptr;
-    if (lights && !is_curve) emitters_.push_back(&light);
+    // One cause, however many shapes it is on.
+    if (lights && !is_curve && (emitters_.empty() || emitters_.back() != &light)) emitters_.push_back(&light);
   }
 
   /// A material, and a shape that wears it.
@@ -193,15 +189,12 @@ class Planner {
 
   void note_ignored() {
     const SceneDescription& d = description_;
-    if (!d.media.empty() || !d.media_uses.empty()) {
+    if (d.has_media()) {
       plan_.ignored.push_back(
           {"participating media", d.media_uses.empty() ? d.media.front().where : d.media_uses.front()});
     }
     if (!d.integrator.plugin.empty() && d.integrator.plugin != "whitted") {
       plan_.ignored.push_back({"integrator \"" + d.integrator.plugin + '"', d.integrator.where});
-    }
-    if (!d.accelerator.plugin.empty()) {
-      plan_.ignored.push_back({"accelerator \"" + d.accelerator.plugin + '"', d.accelerator.where});
     }
   }
 
@@ -210,6 +203,7 @@ class Planner {
   EffectPlan plan_;
   EffectSet forgone_;  ///< Called for, but without consequence.
   std::vector<const Entity*> emitters_;
+  std::vector<int> named_light_;  ///< Whether an area light has called for the effect.
   bool scatters_ = false;
 };
 

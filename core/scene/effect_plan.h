@@ -32,7 +32,7 @@ struct Ignored {
 
 struct PlanOptions {
   EffectSet off{};             ///< Switched off by hand.
-  bool everything_on = false;  ///< All stages run, for tests: the picture must not change by that.
+  bool everything_on = false;  ///< All other stages run, for tests: the picture is the same.
 };
 
 /// Computed from the bound scene by reachability, before anything heavy is read or built.
@@ -51,12 +51,12 @@ struct EffectPlan {
   std::vector<Ignored> ignored;
 
   /// Whether the stages of an effect run. Known at compile time where the build lacks the effect.
-  bool live(Effect e) const { return compiled_in(e) && (everything_on || needed.has(e)); }
+  bool live(Effect e) const { return compiled_in(e) && !off.has(e) && (everything_on || needed.has(e)); }
   bool needs_differentials() const {
     return live(Effect::TextureFiltering) || (live(Effect::Bump) && !off.has(Effect::TextureFiltering));
   }
   /// The effects whose lobes surfaces have.
-  EffectSet lobes() const { return (everything_on ? EffectSet::all() : needed) - off; }
+  EffectSet lobes() const { return (everything_on ? EffectSet::all() : needed) - off - kCompiledOut; }
   const EffectUse& use(Effect e) const { return uses[static_cast<size_t>(e)]; }
 };
 

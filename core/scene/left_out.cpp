@@ -17,8 +17,9 @@ class Finder {
     for (size_t i = 0; i < description_.textures.size(); ++i) {
       if (!plan_.texture_live[i]) add_texture(i);
     }
+    const std::vector<bool> worn = find_worn();
     for (size_t i = 1; i < description_.materials.size(); ++i) {  // The first is pbrt's default, not a statement.
-      if (!plan_.material_live[i]) add_material(description_.materials[i]);
+      if (!plan_.material_live[i]) add_material(i, worn[i]);
     }
     for (size_t i = 0; i < description_.lights.size(); ++i) {
       if (!plan_.light_live[i]) add_light(i);
@@ -56,18 +57,25 @@ class Finder {
   void add_texture(size_t i) {
     const TextureDescription& t = description_.textures[i];
     const auto& plugin = scene_.textures[i].plugin;
-    const auto is_constant = [](const auto* texture) { return texture && texture->constant(); };
-    const bool folded = is_constant(dynamic_cast<const Texture<float>*>(plugin.get())) ||
-                        is_constant(dynamic_cast<const Texture<RGB>*>(plugin.get()));
-    const char* reason = folded                            ? "the same everywhere: its users hold the value"
+    const char* reason = plugin && is_folded(*plugin)      ? "the same everywhere: its users hold the value"
                          : plan_.off.has(Effect::Textures) ? "textures are switched off"
                                                            : "no visible surface uses it";
     add_files(t, t.spectrum ? "spectrum texture" : "float texture", add("texture", t.name, reason, t.where).files);
   }
 
-  void add_material(const MaterialDescription& m) {
-    add_files(m, "material",
-              add("material", m.name.empty() ? m.plugin : m.name, "no visible shape wears it", m.where).files);
+  void add_material(size_t i, bool overridden) {
+    const MaterialDescription& m = description_.materials[i];
+    const char* reason = overridden ? "the shapes that wear it override parameters" : "no visible shape wears it";
+    add_files(m, "material", add("material", m.name.empty() ? m.plugin : m.name, reason, m.where).files);
+  }
+
+  /// By material: whether a visible shape wears it, be it with other parameters.
+  std::vector<bool> find_worn() const {
+    std::vector<bool> worn(description_.materials.size());
+    for (size_t i = 0; i < description_.shapes.size(); ++i) {
+      if (plan_.shape_live[i]) worn[static_cast<size_t>(description_.shapes[i].material)] = true;
+    }
+    return worn;
   }
 
   void add_light(size_t i) {
@@ -100,6 +108,7 @@ class Finder {
       add_files(shape, "shape", found_[entry[static_cast<size_t>(shape.object)]].files);
     }
     for (const UnreadFile& file : description_.unread_files) {
+      if (plan_.object_live[static_cast<size_t>(file.object)]) continue;  // In a file with mistakes.
       found_[entry[static_cast<size_t>(file.object)]].files.push_back({file.path, size_of(file.path)});
     }
   }

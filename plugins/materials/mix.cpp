@@ -21,7 +21,7 @@ struct Mix : Material {
   EffectSet effects() const override {
     EffectSet e;
     for (const auto& member : {namedmaterial1, namedmaterial2})
-      if (member) e |= member->effects();
+      if (member && !member->is_interface()) e |= member->effects();
     return e;
   }
 

@@ -98,6 +98,39 @@ class Explain(unittest.TestCase):
         self.assertIn(("leaves.pbrt", 100), files[("object", "tree")])
         self.assertEqual(left_out[("texture", "wood")]["where"].split("/")[-1], "scene.pbrt:3:13")
 
+    def test_what_is_placed_after_all_is_read(self):
+        # The included file is more than a part of its object: it ends it, and places another.
+        self.write("ball.pbrt", 'Shape "sphere"')
+        self.write("part.pbrt", """Shape "sphere" ObjectEnd ObjectBegin "two" Include "ball.pbrt" ObjectEnd
+            ObjectInstance "two" ObjectBegin "three" Shape "disk" """)
+        scene = self.write("scene.pbrt", """WorldBegin
+            ObjectBegin "one" Include "part.pbrt" ObjectEnd
+            ObjectInstance "one" ObjectInstance "three"
+            WorldEnd""")
+        done = explain(scene, "--json")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        world = json.loads(done.stdout)["worlds"][0]
+        self.assertEqual(world["left_out"], [])
+        placed = [e for e in world["effects"] if e["effect"] == "instancing"][0]
+        self.assertEqual(placed["called_for_by"], 3)
+
+    def test_mistakes_end_it(self):
+        self.write("ball.pbrt", 'Shape "sphere"')
+        scene = self.write("scene.pbrt", """WorldBegin
+            ObjectBegin "a" Include "ball.pbrt" ObjectEnd
+            Translate 1 foo WorldEnd
+            ObjectInstance "a"
+            WorldEnd""")
+        done = explain(scene)
+        self.assertEqual((done.returncode, done.stdout), (3, ""))
+        self.assertRegex(done.stderr, r"scene.pbrt:3:\d+: error: ")
+
+    def test_names_need_not_be_utf8(self):
+        scene = os.path.join(self.folder, "latin.pbrt")
+        with open(scene, "wb") as f:
+            f.write(b'WorldBegin Texture "caf\xe9" "float" "windy" Shape "sphere" WorldEnd')
+        self.assertEqual(json.loads(explain(scene, "--json").stdout)["worlds"][0]["left_out"][0]["kind"], "texture")
+
     def test_switched_off_effects_say_so(self):
         text = explain("scenes/mesh.pbrt", "--without", "shadows").stdout
         self.assertIn("off\n  shadows             switched off\n      for distant at scenes/mesh.pbrt:14:3\n", text)

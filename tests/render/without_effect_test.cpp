@@ -70,10 +70,32 @@ TEST(WithoutEffect, IsTheSceneThatNeverAskedForIt) {
     const std::string with = scene(p.with, p.options_with), without = scene(p.without, p.options_without);
     const std::vector<float> expected = picture(without, p.off == Effect::DeltaLights ? off : EffectSet{});
     EXPECT_EQ(picture(with, off), expected) << effect_name(p.off);
+    const PlanOptions check{.off = off, .everything_on = true};
+    EXPECT_EQ(Rendered(with, {}, {}, Planned::Warnings::Failures, check).rgb(), expected) << effect_name(p.off);
     EXPECT_NE(picture(with, {}), expected) << effect_name(p.off) << " changes nothing, and shows nothing";
     tried.add(p.off);
   }
   EXPECT_EQ(EffectSet::all() - tried, EffectSet{Effect::Shadows});
+}
+
+TEST(WithoutEffect, NestedTexturesAreNotFoldedIntoWhatTheyAreMadeOf) {
+  const std::string scaled = kChecks +
+                             "Texture \"s\" \"spectrum\" \"scale\" \"texture tex1\" \"c\" \"rgb tex2\" [1 0 0] "
+                             "Material \"matte\" \"texture Kd\" \"s\"";
+  const std::string pinhole = "Camera \"perspective\"\n";
+  EXPECT_EQ(picture(scene(scaled, pinhole), {Effect::Textures}), picture(scene("", pinhole), {}));
+}
+
+TEST(WithoutEffect, BumpsKeepTheNormalsOwnChangeWithoutFiltering) {
+  // On a sphere a displacement of 5 to 7 turns normals less than one of 0 to 2, the surface being farther out.
+  const auto bumps = [](double low) {
+    std::string text = "Texture \"b\" \"float\" \"bilerp\"";
+    for (const char* corner : {"v00", "v01"}) text += " \"float " + std::string(corner) + "\" " + std::to_string(low);
+    for (const char* corner : {"v10", "v11"})
+      text += " \"float " + std::string(corner) + "\" " + std::to_string(low + 2);
+    return scene(text + " Material \"matte\" \"texture bumpmap\" \"b\"", "Camera \"perspective\"\n");
+  };
+  EXPECT_NE(picture(bumps(0), {Effect::TextureFiltering}), picture(bumps(5), {Effect::TextureFiltering}));
 }
 
 TEST(WithoutEffect, LightPassesThroughEverythingWithoutShadows) {

@@ -12,7 +12,7 @@ void add_effect_flags(CLI::App& app, EffectFlags& flags) {
 std::string usage_problem(const EffectFlags& flags) {
   for (const auto& [flag, names] : {std::pair("--without", flags.without), std::pair("--only", flags.only)}) {
     std::string unknown;
-    if (names.empty() || !parse_effects(names, unknown).empty()) continue;
+    if (!names || !parse_effects(*names, unknown).empty()) continue;
     const std::string hint = did_you_mean(unknown, effect_names());
     return fmt::format("{}: there is no effect \"{}\"; {}", flag, unknown,
                        hint.empty() ? fmt::format("there are {}", fmt::join(effect_names(), ", ")) : hint);
@@ -23,8 +23,8 @@ std::string usage_problem(const EffectFlags& flags) {
 PlanOptions plan_options(const EffectFlags& flags) {
   std::string none;
   PlanOptions o;
-  if (!flags.without.empty()) o.off = parse_effects(flags.without, none);
-  if (!flags.only.empty()) o.off = EffectSet::all() - parse_effects(flags.only, none);
+  if (flags.without) o.off = parse_effects(*flags.without, none);
+  if (flags.only) o.off = EffectSet::all() - parse_effects(*flags.only, none);
   o.everything_on = flags.plan_check;
   return o;
 }

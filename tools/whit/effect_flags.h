@@ -1,6 +1,7 @@
 // The flags that switch effects off by hand, which render and explain share.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/scene/effect_plan.h"
@@ -9,7 +10,7 @@
 namespace whit {
 
 struct EffectFlags {
-  std::string without, only;  ///< Names with commas between.
+  std::optional<std::string> without, only;  ///< Names with commas between.
   bool plan_check = false;
 };
 

@@ -84,28 +84,32 @@ void print_on(const Json& effects) {
   }
 }
 
-void print_off(const Json& effects) {
-  fmt::print("off\n");
+/// Effects that nothing calls for, in lines that are no wider than a page.
+void print_uncalled(const Json& effects) {
+  constexpr size_t kWidth = 100;
   std::string line = "  nothing calls for";
-  bool any = false;
+  const char* before = " ";
   for (const Json& e : effects) {
-    if (e["on"].get<bool>()) continue;
-    if (e.contains("causes")) {
-      fmt::print("  {:<20}{}\n", text(e, "effect"), text(e, "why_off"));
-      print_causes(e);
-      continue;
-    }
-    constexpr size_t kWidth = 100;
-    const std::string word = (any ? ", " : " ") + text(e, "effect");
+    if (e["on"].get<bool>() || e.contains("causes")) continue;
+    std::string word = before + text(e, "effect");
     if (line.size() + word.size() > kWidth) {
       fmt::print("{},\n", line);
-      line = "     " + word.substr(1);
-    } else {
-      line += word;
+      line = "     ", word = " " + text(e, "effect");
     }
-    any = true;
+    line += word;
+    before = ", ";
   }
-  if (any) fmt::print("{}\n", line);
+  if (*before == ',') fmt::print("{}\n", line);
+}
+
+void print_off(const Json& effects) {
+  fmt::print("off\n");
+  for (const Json& e : effects) {
+    if (e["on"].get<bool>() || !e.contains("causes")) continue;
+    fmt::print("  {:<20}{}\n", text(e, "effect"), text(e, "why_off"));
+    print_causes(e);
+  }
+  print_uncalled(effects);
 }
 
 void print_files(const Json& entry) {
@@ -166,14 +170,16 @@ int explain_command(const Arguments& args) {
   Sources sources;
   LoadedFile file = load_file(sources, path);
   Diagnostics all = file.parsed.diagnostics;
-  Json worlds = Json::array();
+  std::vector<PlannedScene> planned;
   for (const SceneDescription& world : file.parsed.scenes) {
-    worlds.push_back(describe(plan_scene(world, sources, all, plan_options(flags)), sources));
+    planned.push_back(plan_scene(world, sources, all, plan_options(flags)));
   }
   print_diagnostics(sources, all);
   if (all.has_errors()) return exit_code(all);
+  Json worlds = Json::array();
+  for (const PlannedScene& world : planned) worlds.push_back(describe(world, sources));
   if (as_json) {
-    fmt::print("{}\n", Json{{"worlds", worlds}}.dump(1));
+    fmt::print("{}\n", Json{{"worlds", worlds}}.dump(1, ' ', false, Json::error_handler_t::replace));
     return kDone;
   }
   for (size_t i = 0; i < worlds.size(); ++i) {

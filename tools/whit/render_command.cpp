@@ -195,8 +195,8 @@ class RenderJob {
     Diagnostics diagnostics;
     PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
     times_.plan = planned.seconds;
-    if (!world.media.empty() || !world.media_uses.empty()) {
-      diagnostics.warning(world.world_begin, "participating media is not simulated", "the picture is made without");
+    if (world.has_media()) {
+      diagnostics.warning(world.world_begin, "participating media are not simulated", "the picture is made without");
     }
     unread_.clear();
     for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);
