@@ -264,6 +264,12 @@ class Binder {
 
 }  // namespace
 
+const AreaLight* BoundScene::emission_of(const ShapeDescription& shape) const {
+  if (shape.area_light < 0) return nullptr;
+  const AreaLight* light = area_lights[static_cast<size_t>(shape.area_light)].plugin.get();
+  return light && !is_black(light->radiance()) ? light : nullptr;
+}
+
 BoundScene bind_scene(const SceneDescription& description, const ValuePosition& value_position,
                       Diagnostics& diagnostics, bool with_textures) {
   return Binder(description, value_position, diagnostics, with_textures).run();

@@ -48,6 +48,8 @@ struct BoundScene {
   std::vector<Bound<Shape>> shapes;
   /// Index into materials of each shape; beyond the description's for shapes that override parameters.
   std::vector<int> shape_material;
+  /// What a shape radiates; null for nothing, be it black.
+  const AreaLight* emission_of(const ShapeDescription& shape) const;
   std::deque<ParameterList> own_params;  ///< Lists made while binding, kept for the plugins that refer to them.
 };
 

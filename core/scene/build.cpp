@@ -414,9 +414,8 @@ class Builder {
   }
 
   int emission_of(const ShapeDescription& d, const SceneShape& shape) {
-    if (d.area_light < 0 || !scene_->plan.needed.has(Effect::AreaLights)) return -1;
-    const auto& light = scene_->bound.area_lights[static_cast<size_t>(d.area_light)].plugin;
-    if (!light || is_black(light->radiance())) return -1;
+    const AreaLight* light = scene_->bound.emission_of(d);
+    if (!light || !scene_->plan.needed.has(Effect::AreaLights)) return -1;
     // A curve always faces the ray, so it has no back that could be dark.
     scene_->emissions.push_back({light->radiance(), light->two_sided() || shape.curves != nullptr});
     return static_cast<int>(scene_->emissions.size()) - 1;

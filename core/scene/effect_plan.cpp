@@ -1,6 +1,6 @@
 #include "core/scene/effect_plan.h"
 
-#include <algorithm>
+#include <utility>
 
 namespace whit {
 namespace {
@@ -93,7 +93,7 @@ class Planner {
       call_for({Effect::Interfaces}, scene_.materials[material].where, "none");
       return;
     }
-    const bool emits = emits_light(d) && !moves(d.transform);
+    const bool emits = scene_.emission_of(d) && !moves(d.transform);
     // A constant alpha of 0 is a shape that is not there, or that lights unseen.
     const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0 && !is_off(Effect::Alpha);
     const bool lights = emits && !is_off(Effect::AreaLights) && d.object < 0;
@@ -105,12 +105,6 @@ class Planner {
     if (animated(d.transform)) call_for({Effect::MotionBlur}, d.where, "moving " + d.plugin);
     if (emits) visit_emission(i, lights);
     if (!unseen) visit_material(scene_.shape_material[i], d.where);
-  }
-
-  bool emits_light(const ShapeDescription& d) const {
-    if (d.area_light < 0) return false;
-    const auto& light = scene_.area_lights[static_cast<size_t>(d.area_light)].plugin;
-    return light && !is_black(light->radiance());
   }
 
   /// A surface that emits, which none does that moves, as in pbrt-v3. `lights`: it stands in the world, so that it also

@@ -1,6 +1,5 @@
 #include "core/scene/left_out.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "core/plugin/registry.h"

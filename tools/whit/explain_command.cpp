@@ -16,7 +16,94 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// ---- What there is to say ----
+// ---- In words ----
+
+void print_causes(const EffectUse& use, const Sources& sources) {
+  for (const EffectCause& c : use.causes) fmt::print("      for {} at {}\n", c.what, sources.location(c.where));
+  const size_t more = use.count - use.causes.size();
+  if (more > 0) fmt::print("      and for {} more\n", more);
+}
+
+/// ", 48 bytes a ray, 64 a point"
+std::string bytes_carried(const EffectInfo& info) {
+  std::string out;
+  for (const auto& [bytes, of] : {std::pair(info.ray_bytes, "ray"), std::pair(info.point_bytes, "point")}) {
+    if (bytes > 0) out += fmt::format(", {}{} a {}", bytes, out.empty() ? " bytes" : "", of);
+  }
+  return out;
+}
+
+void print_on(const EffectPlan& plan, const Sources& sources) {
+  fmt::print("on\n");
+  for_effects(plan.needed, [&](Effect e) {
+    const EffectInfo& info = effect_info(e);
+    fmt::print("  {:<20}{}{}\n", info.name, info.stages, bytes_carried(info));
+    if (*info.dimensions) fmt::print("      sample dimensions: {}\n", info.dimensions);
+    print_causes(plan.use(e), sources);
+  });
+}
+
+/// Effects that nothing calls for, in lines that are no wider than a page.
+void print_uncalled(const EffectSet& uncalled) {
+  constexpr size_t kWidth = 100;
+  std::string line = "  nothing calls for";
+  const char* before = " ";
+  for_effects(uncalled, [&](Effect e) {
+    std::string word = std::string(before) + effect_name(e);
+    if (line.size() + word.size() > kWidth) {
+      fmt::print("{},\n", line);
+      line = "     ", word = std::string(" ") + effect_name(e);
+    }
+    line += word;
+    before = ", ";
+  });
+  if (!uncalled.empty()) fmt::print("{}\n", line);
+}
+
+void print_off(const EffectPlan& plan, const Sources& sources) {
+  fmt::print("off\n");
+  for_effects(plan.called_for - plan.needed, [&](Effect e) {
+    fmt::print("  {:<20}{}\n", effect_name(e), plan.use(e).why_off);
+    print_causes(plan.use(e), sources);
+  });
+  print_uncalled(EffectSet::all() - plan.called_for);
+}
+
+void print_files(const std::vector<LeftOutFile>& files) {
+  constexpr size_t kShown = 3;
+  double more = 0;
+  for (size_t i = 0; i < files.size(); ++i) {
+    const auto bytes = static_cast<double>(files[i].bytes);
+    if (i < kShown) fmt::print("      not read: {}, {}\n", files[i].name, bytes_text(bytes));
+    else more += bytes;
+  }
+  if (files.size() > kShown) fmt::print("      and {} more files, {}\n", files.size() - kShown, bytes_text(more));
+}
+
+/// Each kind's first few.
+void print_left_out(const std::vector<LeftOut>& left_out, const Sources& sources) {
+  constexpr int kShown = 10;
+  if (!left_out.empty()) fmt::print("left out\n");
+  std::map<std::string, int> seen;
+  for (const LeftOut& l : left_out) {
+    if (++seen[l.kind] > kShown) continue;
+    fmt::print("  {} \"{}\" at {}: {}\n", l.kind, l.name, sources.location(l.where), l.reason);
+    print_files(l.files);
+  }
+  for (const auto& [kind, count] : seen) {
+    if (count > kShown) fmt::print("  and {} more of kind {} (--json lists all)\n", count - kShown, kind);
+  }
+}
+
+void print_world(const PlannedScene& world, const Sources& sources) {
+  print_on(world.plan, sources);
+  print_off(world.plan, sources);
+  print_left_out(find_left_out(world.bound, world.plan), sources);
+  if (!world.plan.ignored.empty()) fmt::print("not simulated\n");
+  for (const Ignored& i : world.plan.ignored) fmt::print("  {} at {}\n", i.what, sources.location(i.where));
+}
+
+// ---- For machines ----
 
 Json describe_use(Effect e, const EffectPlan& plan, const Sources& sources) {
   const EffectUse& use = plan.use(e);
@@ -53,101 +140,10 @@ Json describe(const PlannedScene& p, const Sources& sources) {
   return world;
 }
 
-// ---- In words ----
-
-std::string text(const Json& j, const char* key) { return j.contains(key) ? j[key].get<std::string>() : std::string(); }
-
-void print_causes(const Json& effect) {
-  if (!effect.contains("causes")) return;
-  for (const Json& c : effect["causes"]) fmt::print("      for {} at {}\n", text(c, "what"), text(c, "where"));
-  const size_t more = effect["called_for_by"].get<size_t>() - effect["causes"].size();
-  if (more > 0) fmt::print("      and for {} more\n", more);
-}
-
-/// ", 48 bytes a ray, 64 a point"
-std::string bytes_carried(const Json& effect) {
-  std::string out;
-  for (const auto& [key, of] : {std::pair("bytes_per_ray", "ray"), std::pair("bytes_per_point", "point")}) {
-    if (!effect.contains(key)) continue;
-    out += fmt::format(", {}{} a {}", effect[key].get<int>(), out.empty() ? " bytes" : "", of);
-  }
-  return out;
-}
-
-void print_on(const Json& effects) {
-  fmt::print("on\n");
-  for (const Json& e : effects) {
-    if (!e["on"].get<bool>()) continue;
-    fmt::print("  {:<20}{}{}\n", text(e, "effect"), text(e, "stages"), bytes_carried(e));
-    if (e.contains("dimensions")) fmt::print("      sample dimensions: {}\n", text(e, "dimensions"));
-    print_causes(e);
-  }
-}
-
-/// Effects that nothing calls for, in lines that are no wider than a page.
-void print_uncalled(const Json& effects) {
-  constexpr size_t kWidth = 100;
-  std::string line = "  nothing calls for";
-  const char* before = " ";
-  for (const Json& e : effects) {
-    if (e["on"].get<bool>() || e.contains("causes")) continue;
-    std::string word = before + text(e, "effect");
-    if (line.size() + word.size() > kWidth) {
-      fmt::print("{},\n", line);
-      line = "     ", word = " " + text(e, "effect");
-    }
-    line += word;
-    before = ", ";
-  }
-  if (*before == ',') fmt::print("{}\n", line);
-}
-
-void print_off(const Json& effects) {
-  fmt::print("off\n");
-  for (const Json& e : effects) {
-    if (e["on"].get<bool>() || !e.contains("causes")) continue;
-    fmt::print("  {:<20}{}\n", text(e, "effect"), text(e, "why_off"));
-    print_causes(e);
-  }
-  print_uncalled(effects);
-}
-
-void print_files(const Json& entry) {
-  if (!entry.contains("files")) return;
-  constexpr size_t kShown = 3;
-  const size_t n = entry["files"].size();
-  for (size_t i = 0; i < std::min(n, kShown); ++i) {
-    const Json& file = entry["files"][i];
-    fmt::print("      not read: {}, {}\n", text(file, "name"), bytes_text(file["bytes"].get<double>()));
-  }
-  if (n <= kShown) return;
-  double bytes = 0;
-  for (size_t i = kShown; i < n; ++i) bytes += entry["files"][i]["bytes"].get<double>();
-  fmt::print("      and {} more files, {}\n", n - kShown, bytes_text(bytes));
-}
-
-/// Each kind's first few.
-void print_left_out(const Json& left_out) {
-  constexpr int kShown = 10;
-  if (!left_out.empty()) fmt::print("left out\n");
-  std::map<std::string, int> seen;
-  for (const Json& l : left_out) {
-    const std::string kind = text(l, "kind");
-    if (++seen[kind] > kShown) continue;
-    fmt::print("  {} \"{}\" at {}: {}\n", kind, text(l, "name"), text(l, "where"), text(l, "reason"));
-    print_files(l);
-  }
-  for (const auto& [kind, count] : seen) {
-    if (count > kShown) fmt::print("  and {} more of kind {} (--json lists all)\n", count - kShown, kind);
-  }
-}
-
-void print_world(const Json& world) {
-  print_on(world["effects"]);
-  print_off(world["effects"]);
-  print_left_out(world["left_out"]);
-  if (!world["not_simulated"].empty()) fmt::print("not simulated\n");
-  for (const Json& i : world["not_simulated"]) fmt::print("  {} at {}\n", text(i, "what"), text(i, "where"));
+void print_json(const std::vector<PlannedScene>& worlds, const Sources& sources) {
+  Json all{{"worlds", Json::array()}};
+  for (const PlannedScene& world : worlds) all["worlds"].push_back(describe(world, sources));
+  fmt::print("{}\n", all.dump(1, ' ', false, Json::error_handler_t::replace));  // Names need not be UTF-8.
 }
 
 }  // namespace
@@ -170,21 +166,19 @@ int explain_command(const Arguments& args) {
   Sources sources;
   LoadedFile file = load_file(sources, path);
   Diagnostics all = file.parsed.diagnostics;
-  std::vector<PlannedScene> planned;
+  std::vector<PlannedScene> worlds;
   for (const SceneDescription& world : file.parsed.scenes) {
-    planned.push_back(plan_scene(world, sources, all, plan_options(flags)));
+    worlds.push_back(plan_scene(world, sources, all, plan_options(flags)));
   }
   print_diagnostics(sources, all);
   if (all.has_errors()) return exit_code(all);
-  Json worlds = Json::array();
-  for (const PlannedScene& world : planned) worlds.push_back(describe(world, sources));
   if (as_json) {
-    fmt::print("{}\n", Json{{"worlds", worlds}}.dump(1, ' ', false, Json::error_handler_t::replace));
+    print_json(worlds, sources);
     return kDone;
   }
   for (size_t i = 0; i < worlds.size(); ++i) {
     if (worlds.size() > 1) fmt::print("{}world {} of {}\n", i > 0 ? "\n" : "", i + 1, worlds.size());
-    print_world(worlds[i]);
+    print_world(worlds[i], sources);
   }
   return kDone;
 }

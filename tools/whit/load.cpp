@@ -14,6 +14,14 @@ double since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// A build of which effects are compiled out is for measurements, and must not show half of a scene.
+void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
+  for_effects(plan.needed & kCompiledOut, [&](Effect e) {
+    diagnostics.error(plan.use(e).causes.front().where, std::string("this build lacks ") + effect_name(e),
+                      "configure one without WHIT_COMPILE_OUT, or switch it off with --without");
+  });
+}
+
 }  // namespace
 
 LoadedFile load_text(Sources& sources, const std::string& name, std::string text, const ParseOptions& options) {
@@ -34,18 +42,6 @@ LoadedFile load_file(Sources& sources, const std::string& path, const ParseOptio
   out.parse_seconds = since(start);
   return out;
 }
-
-namespace {
-
-/// A build of which effects are compiled out is for measurements, and must not show half of a scene.
-void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
-  for_effects(plan.needed & kCompiledOut, [&](Effect e) {
-    diagnostics.error(plan.use(e).causes.front().where, std::string("this build lacks ") + effect_name(e),
-                      "configure one without WHIT_COMPILE_OUT, or switch it off with --without");
-  });
-}
-
-}  // namespace
 
 PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics,
                         const PlanOptions& options) {
