@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """The conformance scenes against pbrt-v3's pictures, by both comparers: `whit diff`, as tools/conformance calls it, and
-compare.py. pending.json lists the scenes that may be off, each with its reason and the part of the picture it concerns,
-"apart": [x0, x1, y0, y1] in pixels, ends exclusive. They must be off, or leave the list; they must pass apart from it.
+compare.py.
 """
 import concurrent.futures
 import importlib.machinery
@@ -49,17 +48,6 @@ def check(names):
     return {n: "check: " + lines[0][len(scene_file(n)) + 1:] for n, lines in said.items() if lines}
 
 
-def put_reference_into(picture, reference, apart):
-    """The picture with that part taken from the reference, in its place; returns how much brighter ours was there."""
-    import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
-    part = oiio.ROI(*apart, 0, 1, 0, 3)
-    ours, theirs = (oiio.ImageBufAlgo.channels(oiio.ImageBuf(f), ("R", "G", "B")) for f in (picture, reference))
-    means = [sum(oiio.ImageBufAlgo.computePixelStats(b, part).avg) for b in (ours, theirs)]
-    oiio.ImageBufAlgo.paste(ours, apart[0], apart[2], 0, 0, oiio.ImageBufAlgo.cut(theirs, part))
-    ours.write(picture)
-    return means[0] / means[1]
-
-
 @unittest.skipUnless(WHIT, "the program is not built")
 class Conformance(unittest.TestCase):
     def test_scenes(self):
@@ -72,8 +60,6 @@ class Conformance(unittest.TestCase):
         self.assertEqual(len(limits), 133)
         unknown = check(limits)
 
-        pending = read_json("pending.json")
-
         with tempfile.TemporaryDirectory() as out:
             def judge(name):
                 """Why a scene does not pass; nothing when it does."""
@@ -82,22 +68,14 @@ class Conformance(unittest.TestCase):
                 picture, reference = os.path.join(out, name + ".exr"), os.path.join(HERE, "ref", name + ".exr")
                 ours = tool.check_scene(WHIT, scene_file(name), reference, picture, limits[name])
                 theirs = compare.compare_file(reference, picture, limits[name])
-                why = ["%s: %s" % (who, ", ".join(r["why"]))
-                       for who, r in (("whit diff", ours), ("compare.py", theirs)) if r["status"] != "ok"]
-                if name in pending and why:
-                    # pbrt-v3 darkens the tips by 3 to 18 % of these parts' means; whit must not do so, too.
-                    self.assertGreater(put_reference_into(picture, reference, pending[name]["apart"]), 1.02, name)
-                    self.assertEqual(compare.compare_file(reference, picture, limits[name])["why"], [], name)
-                return why
+                return ["%s: %s" % (who, ", ".join(r["why"]))
+                        for who, r in (("whit diff", ours), ("compare.py", theirs)) if r["status"] != "ok"]
 
             # Two at a time: much of a small picture's time is starting the program, which uses one core.
             with concurrent.futures.ThreadPoolExecutor(2) as pool:
                 whys = dict(zip(limits, pool.map(judge, limits)))
 
-        self.assertEqual({n: w for n, w in whys.items() if w and n not in pending}, {}, "these are off")
-        self.assertEqual([n for n in pending if not whys[n]], [], "these pass: take them off pending.json")
-        for name, entry in pending.items():
-            self.assertRegex(entry["why"], r"^[A-Z].*\.$", name)
+        self.assertEqual({n: w for n, w in whys.items() if w}, {}, "these are off")
 
 
 @unittest.skipUnless(WHIT, "the program is not built")
