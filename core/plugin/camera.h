@@ -29,6 +29,7 @@ struct FilmGeometry {
 
 class Camera : public Plugin {
  public:
+  static constexpr const char* kCategory = "camera";
   FilmGeometry film;
   float shutter_open = 0, shutter_close = 1;  ///< Times; transforms of the scene run from time_start to time_end.
 

@@ -7,6 +7,7 @@ namespace whit {
 
 class Film : public Plugin {
  public:
+  static constexpr const char* kCategory = "film";
   virtual Vec2i resolution() const = 0;
   /// The rendered part as fractions (x0, x1, y0, y1) of the full picture.
   virtual void crop_window(double out[4]) const = 0;

@@ -7,6 +7,7 @@ namespace whit {
 
 class Filter : public Plugin {
  public:
+  static constexpr const char* kCategory = "filter";
   float x_width = 2, y_width = 2;  ///< Radii in pixels.
 
   /// The filter's weight at an offset (pixels) from the pixel's centre, for |x| <= x_width, |y| <= y_width.

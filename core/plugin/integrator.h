@@ -28,6 +28,7 @@ class RayRound {
 
 class Integrator : public Plugin {
  public:
+  static constexpr const char* kCategory = "integrator";
   /// What happens to one round of rays: called once per batch and depth.
   virtual void shade(RayRound& round) const = 0;
   /// Rounds of rays at most (maxdepth).

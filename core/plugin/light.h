@@ -24,6 +24,7 @@ struct LightSamples {
 
 class Light : public Plugin {
  public:
+  static constexpr const char* kCategory = "light";
   /// Light-to-world, set by the builder before prepare().
   Mat4d light_to_world;
 
@@ -54,6 +55,7 @@ class Light : public Plugin {
 /// shape's business.
 class AreaLight : public Plugin {
  public:
+  static constexpr const char* kCategory = "area light";
   /// Emitted radiance, the same in every direction of the emitting side(s).
   virtual RGB radiance() const = 0;
   virtual bool two_sided() const = 0;

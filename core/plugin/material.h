@@ -10,6 +10,7 @@ namespace whit {
 /// A surface material. One batch function; the renderer does the rest (bump mapping, evaluation, sampling).
 class Material : public Plugin {
  public:
+  static constexpr const char* kCategory = "material";
   Tex<float> bump;  ///< Displacement along the normal, in scene units; constant means no bump.
 
   /// Adds the lobes of the s.n points to `out`. Arrays come from s.arena. Weights are clamped to >= 0 by clamp0.

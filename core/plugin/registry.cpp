@@ -101,7 +101,7 @@ std::vector<std::string> plugin_names(const std::string& category) {
   return out;
 }
 
-void add_plugin(PluginInfo info) {
+void detail::add_plugin(PluginInfo info) {
   std::vector<std::string> names = info.aliases;
   names.push_back(info.name);
   for (const std::string& name : names) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "core/plugin/param.h"
@@ -13,7 +14,7 @@ namespace whit {
 
 /// Everything known about a plugin: what help, docs, binding and checks read.
 struct PluginInfo {
-  std::string category;  ///< "shape", "material", "float texture", "spectrum texture", "light", "area light", ...
+  std::string category;  ///< The kCategory of its base: "shape", "float texture", "area light", ...
   std::string name;
   std::vector<std::string> aliases;
   std::string doc;
@@ -29,9 +30,6 @@ const PluginInfo* find_plugin(const std::string& category, const std::string& na
 std::vector<const PluginInfo*> list_plugins(const std::string& category = "");
 /// The names (no aliases) of a category, sorted.
 std::vector<std::string> plugin_names(const std::string& category);
-/// Adds a plugin; called by Register<>. A second plugin of the same category and name aborts the program.
-void add_plugin(PluginInfo info);
-
 /// Binds the parameters of a statement: every given parameter is looked up, its type, count and range
 /// checked, and stored. Unknown names and parameters of the wrong type warn with a did-you-mean, unless
 /// `also_known` (another plugin that shares the parameter list, as a shape's material does) has them.
@@ -39,35 +37,48 @@ void add_plugin(PluginInfo info);
 bool bind_parameters(const PluginInfo& info, Plugin& plugin, const ParameterList& params, const BindContext& ctx,
                      const std::vector<const PluginInfo*>& also_known = {});
 
-/// Registers plugin class T from a static object:
-///   const Register<Matte> matte{"material", "matte", "Lambertian ...", param(...), param(...)};
+namespace detail {
+
+/// Adds a plugin; a second one of the same category and name ends the program. Only Register does, which knows that
+/// what make() makes is of that category.
+void add_plugin(PluginInfo info);
+
+/// Whether class T may have a parameter of type V: a material alone may be made of materials.
+template <class T, class V>
+inline constexpr bool kMayHave = !std::is_same_v<V, std::shared_ptr<Material>> || std::is_base_of_v<Material, T>;
+
+}  // namespace detail
+
+/// Registers plugin class T from a static object, in the category of T's base:
+///   const Register<Matte> matte{"matte", "Lambertian ...", param(...), param(...)};
 template <class T>
 class Register {
  public:
-  template <class... D>
-  Register(const char* category, const char* name, const char* doc, D... declared) {
-    add({}, category, name, doc, declared...);
+  template <class... D, class... V>
+  Register(const char* name, const char* doc, DeclaredParam<D, V>... declared) {
+    add({}, name, doc, declared...);
   }
   /// With further names under which scene files know the plugin.
-  template <class... D>
-  Register(std::vector<std::string> aliases, const char* category, const char* name, const char* doc, D... declared) {
-    add(std::move(aliases), category, name, doc, declared...);
+  template <class... D, class... V>
+  Register(std::vector<std::string> aliases, const char* name, const char* doc, DeclaredParam<D, V>... declared) {
+    add(std::move(aliases), name, doc, declared...);
   }
 
  private:
-  template <class... D>
-  void add(std::vector<std::string> aliases, const char* category, const char* name, const char* doc,
-           const D&... declared) {
+  template <class... D, class... V>
+  void add(std::vector<std::string> aliases, const char* name, const char* doc,
+           const DeclaredParam<D, V>&... declared) {
+    static_assert((detail::kMayHave<T, V> && ...), "only a material has materials as parameters");
     PluginInfo info;
-    info.category = category, info.name = name, info.aliases = std::move(aliases), info.doc = doc;
+    info.category = T::kCategory, info.name = name, info.aliases = std::move(aliases), info.doc = doc;
     (info.params.push_back(declared.spec), ...);
-    static const std::tuple<D...> defaults{declared...};
+    static const std::tuple<DeclaredParam<D, V>...> defaults{declared...};
     info.make = +[]() -> std::unique_ptr<Plugin> {
       auto plugin = std::make_unique<T>();
       std::apply([&](const auto&... d) { ((plugin.get()->*(d.member) = d.default_value), ...); }, defaults);
       return plugin;
     };
-    add_plugin(std::move(info));
+    detail::add_plugin(std::move(info));
   }
 };
 

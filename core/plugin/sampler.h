@@ -16,6 +16,7 @@ struct SampleKeys {
 
 class Sampler : public Plugin {
  public:
+  static constexpr const char* kCategory = "sampler";
   uint32_t seed = 0;  ///< Set by the program before prepare().
 
   /// Samples per pixel, after the rounding the sampler needs (stratified, powers of two).

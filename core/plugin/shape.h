@@ -14,6 +14,7 @@ namespace whit {
 
 class Shape : public Plugin {
  public:
+  static constexpr const char* kCategory = "shape";
   Tex<float> alpha{1.0f};         ///< Where exactly 0 the surface is not there.
   Tex<float> shadow_alpha{1.0f};  ///< The same, for shadow rays only, in addition to alpha.
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <type_traits>
 
 #include "core/batch/shading.h"
 #include "core/plugin/plugin.h"
@@ -29,6 +30,7 @@ struct ValueLanes<RGB> {
 template <class T>
 class Texture : public Plugin {
  public:
+  static constexpr const char* kCategory = std::is_same_v<T, float> ? "float texture" : "spectrum texture";
   using Lanes = typename ValueLanes<T>::type;
 
   /// The CTM at the Texture statement, set by the builder before prepare(): where non-uv mappings live.

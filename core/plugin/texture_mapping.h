@@ -72,10 +72,10 @@ AffineMap mapping_3d(const Mat4d& texture_to_world, const RenderSpace& space);
 template <class Plugin2D, class T>
 class Register2D : public Register<Plugin2D> {
  public:
-  template <class... D>
-  Register2D(const char* category, const char* name, const char* doc, D... own)
+  template <class... D, class... V>
+  Register2D(const char* name, const char* doc, DeclaredParam<D, V>... own)
       : Register<Plugin2D>(
-            category, name, doc, own...,
+            name, doc, own...,
             choice(&Texture2D<T>::mapping, "mapping", {"uv", "spherical", "cylindrical", "planar"},
                    "How points become texture coordinates."),
             param(&Texture2D<T>::uscale, "uscale", 1.0f, Unit::None, "Repeats along u (uv mapping)."),

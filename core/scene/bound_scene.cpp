@@ -85,16 +85,18 @@ class Binder {
 
   /// Binds one statement; `params` may differ from the entity's own (shape overrides), and must live as long as
   /// the scene: lists stay in it.
-  template <class T>
-  Bound<T> bind_as(const Entity& entity, const PluginInfo& info, const ParameterList& params,
+  template <class T, class Statement>
+  Bound<T> bind_as(const Statement& entity, const PluginInfo& info, const ParameterList& params,
                    const std::vector<const PluginInfo*>& also_known = {}) {
     Bound<T> bound;
     bound.where = entity.where;
     std::shared_ptr<Plugin> plugin(info.make());
     BindContext ctx = context(entity, info.name, &bound.textures);
-    ctx.named_material = [this, &entity, &bound](const std::string& name) {
-      return named_material(entity, name, &bound.materials);
-    };
+    if constexpr (std::is_same_v<Statement, MaterialDescription>) {
+      ctx.named_material = [this, &entity, &bound](const std::string& name) {
+        return named_material(entity, name, &bound.materials);
+      };
+    }
     const bool good = bind_parameters(info, *plugin, params, ctx, also_known);
     const size_t before = diagnostics_.all().size();
     if (good) plugin->check(diagnostics_, entity.where);
@@ -201,9 +203,9 @@ class Binder {
     return keep_only(params, names);
   }
 
-  std::shared_ptr<Material> named_material(const Entity& entity, const std::string& name, std::vector<int>* used) {
-    const auto* description = static_cast<const MaterialDescription*>(&entity);
-    for (const auto& [known, index] : description->named) {
+  std::shared_ptr<Material> named_material(const MaterialDescription& statement, const std::string& name,
+                                           std::vector<int>* used) {
+    for (const auto& [known, index] : statement.named) {
       if (known == name && static_cast<size_t>(index) < scene_.materials.size()) {
         used->push_back(index);
         return scene_.materials[static_cast<size_t>(index)].plugin;

@@ -38,7 +38,6 @@ class Environment final : public ScreenCamera {
 };
 
 const Register<Environment> environment{
-    "camera",
     "environment",
     "Camera that sees all directions, as a lat-long picture with +y at the top. Has no lens or screen window.",
     frameaspectratio_param(),

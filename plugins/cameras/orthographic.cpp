@@ -51,15 +51,10 @@ class Orthographic final : public ScreenCamera {
   Screen screen_;
 };
 
-const Register<Orthographic> orthographic{"camera",
-                                          "orthographic",
-                                          "Camera with parallel rays along +z.",
-                                          frameaspectratio_param(),
-                                          screenwindow_param(),
-                                          lensradius_param(),
-                                          focaldistance_param(),
-                                          shutteropen_param(),
-                                          shutterclose_param()};
+const Register<Orthographic> orthographic{"orthographic",           "Camera with parallel rays along +z.",
+                                          frameaspectratio_param(), screenwindow_param(),
+                                          lensradius_param(),       focaldistance_param(),
+                                          shutteropen_param(),      shutterclose_param()};
 
 }  // namespace
 }  // namespace whit

@@ -60,7 +60,6 @@ constexpr Range kFullAngle{kPositive.min, 179.999};
 constexpr Range kHalfAngle{0, 89.9995};
 
 const Register<Perspective> perspective{
-    "camera",
     "perspective",
     "Pinhole or thin-lens camera that looks along +z.",
     param(&Perspective::fov, "fov", 90.0f, Unit::Degrees, "Angle of view along the shorter side.", kFullAngle),

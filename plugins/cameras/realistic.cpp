@@ -357,7 +357,6 @@ class Realistic final : public Camera {
 };
 
 const Register<Realistic> realistic{
-    "camera",
     "realistic",
     "Camera with the lens of a lens file; scene units are metres.",
     param(

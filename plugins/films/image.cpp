@@ -51,7 +51,6 @@ class ImageFilm final : public Film {
 constexpr Range kResolution{1, 65536};
 
 const Register<ImageFilm> image{
-    "film",
     "image",
     "A picture in a file.",
     param(&ImageFilm::x_resolution, "xresolution", 1280, Unit::Pixels, "Width of the picture.", kResolution),

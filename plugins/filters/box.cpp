@@ -12,7 +12,7 @@ class BoxFilter final : public Filter {
   float evaluate(float, float) const override { return 1; }
 };
 
-const Register<BoxFilter> box{"filter", "box", "Every sample counts the same.", xwidth_param(0.5f), ywidth_param(0.5f)};
+const Register<BoxFilter> box{"box", "Every sample counts the same.", xwidth_param(0.5f), ywidth_param(0.5f)};
 
 }  // namespace
 }  // namespace whit

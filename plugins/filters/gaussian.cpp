@@ -27,11 +27,7 @@ class GaussianFilter final : public Filter {
 };
 
 const Register<GaussianFilter> gaussian{
-    "filter",
-    "gaussian",
-    "A Gaussian, lowered to reach 0 at the radii.",
-    xwidth_param(2),
-    ywidth_param(2),
+    "gaussian", "A Gaussian, lowered to reach 0 at the radii.", xwidth_param(2), ywidth_param(2),
     param(&GaussianFilter::alpha, "alpha", 2.0f, Unit::None, "Falloff of exp(-alpha x^2), x in pixels.", kPositive)};
 
 }  // namespace

@@ -28,7 +28,6 @@ class MitchellFilter final : public Filter {
 };
 
 const Register<MitchellFilter> mitchell{
-    "filter",
     "mitchell",
     "Mitchell and Netravali's cubic: sharp, with faint negative lobes.",
     xwidth_param(2),

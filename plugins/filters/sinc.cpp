@@ -23,11 +23,7 @@ class SincFilter final : public Filter {
 };
 
 const Register<SincFilter> sinc{
-    "filter",
-    "sinc",
-    "Lanczos-windowed sinc: sharpest, rings at strong edges.",
-    xwidth_param(4),
-    ywidth_param(4),
+    "sinc", "Lanczos-windowed sinc: sharpest, rings at strong edges.", xwidth_param(4), ywidth_param(4),
     param(&SincFilter::tau, "tau", 3.0f, Unit::None, "Width of the window, in lobes of the sinc.", kPositive)};
 
 }  // namespace

@@ -17,8 +17,8 @@ class TriangleFilter final : public Filter {
   }
 };
 
-const Register<TriangleFilter> triangle{"filter", "triangle", "Weights that fall linearly to 0 at the radii.",
-                                        xwidth_param(2), ywidth_param(2)};
+const Register<TriangleFilter> triangle{"triangle", "Weights that fall linearly to 0 at the radii.", xwidth_param(2),
+                                        ywidth_param(2)};
 
 }  // namespace
 }  // namespace whit

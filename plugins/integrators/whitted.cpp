@@ -37,7 +37,7 @@ struct Whitted final : Integrator {
 };
 
 const Register<Whitted> whitted{
-    "integrator", "whitted", "Direct light, perfect mirrors and refraction (Whitted 1980).",
+    "whitted", "Direct light, perfect mirrors and refraction (Whitted 1980).",
     param(&Whitted::maxdepth, "maxdepth", 5, Unit::None,
           "Rounds of rays: 1 or less shows direct light only, each further one a specular bounce.", {kAny.min, 1e6}),
     param(&Whitted::bounds, "pixelbounds", Unit::Pixels, "Renders only this part, x0 x1 y0 y1; the rest is black.")};

@@ -19,7 +19,6 @@ class Diffuse final : public AreaLight {
 
 const Register<Diffuse> diffuse{
     std::vector<std::string>{"area"},
-    "area light",
     "diffuse",
     "A surface that radiates evenly in all directions.",
     param(&Diffuse::L, "L", RGB{1.0f}, Unit::Radiance, "Emitted radiance."),

@@ -59,7 +59,6 @@ class DistantLight final : public Light {
 };
 
 const Register<DistantLight> distant{
-    "light",
     "distant",
     "Parallel light from one direction.",
     param(&DistantLight::L, "L", RGB{1.0f}, Unit::Irradiance, "Irradiance on a surface that faces the light."),

@@ -36,10 +36,7 @@ class GoniometricLight final : public PointSource {
 };
 
 const Register<GoniometricLight> goniometric{
-    "light",
-    "goniometric",
-    "A point whose intensity is measured: a picture of all directions.",
-    intensity_param(),
+    "goniometric", "A point whose intensity is measured: a picture of all directions.", intensity_param(),
     intensity_scale_param(),
     param(&GoniometricLight::mapname, "mapname", Unit::None,
           "Lat-long map of factors of I, +y of light space at its top. Without one, the same in all directions.")};

@@ -32,7 +32,6 @@ class InfiniteLight final : public EnvironmentLight {
 
 const Register<InfiniteLight> infinite{
     std::vector<std::string>{"exinfinite"},
-    "light",
     "infinite",
     "Light from infinitely far away all around, constant or from a map.",
     param(&InfiniteLight::L, "L", RGB{1.0f}, Unit::Radiance, "Radiance, or factor of the map."),

@@ -52,9 +52,7 @@ class PointLight final : public Light {
 };
 
 const Register<PointLight> point{
-    "light",
-    "point",
-    "A point that radiates evenly in all directions.",
+    "point", "A point that radiates evenly in all directions.",
     param(&PointLight::I, "I", RGB{1.0f}, Unit::Intensity, "Intensity: radiance at distance 1."),
     param(&PointLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of I."),
     param(&PointLight::from, "from", Point{}, Unit::Length,

@@ -58,7 +58,6 @@ class ProjectionLight final : public PointSource {
 constexpr Range kFullAngle{kPositive.min, 179.999};
 
 const Register<ProjectionLight> projection{
-    "light",
     "projection",
     "A slide projector that throws a picture along +z.",
     intensity_param(),

@@ -72,8 +72,7 @@ class Skybox final : public EnvironmentLight {
   }
 };
 
-const Register<Skybox> skybox{"light",
-                              "skybox",
+const Register<Skybox> skybox{"skybox",
                               "A sky all around, from a map or a gradient, far away or on a sphere.",
                               param(&Skybox::map, "mapname", Unit::None,
                                     "Lat-long map; +z of light space is at its top. Without one: the gradient."),

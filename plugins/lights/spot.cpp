@@ -55,7 +55,6 @@ class SpotLight final : public PointSource {
 };
 
 const Register<SpotLight> spot{
-    "light",
     "spot",
     "A point that lights a cone with a soft edge.",
     intensity_param(),

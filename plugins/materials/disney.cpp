@@ -187,7 +187,6 @@ struct Disney : Material {
 };
 
 const Register<Disney> disney{
-    "material",
     "disney",
     "Disney's BSDF: from plastic and cloth to metal, glass and thin leaves.",
     param(&Disney::color, "color", RGB(0.5f), Unit::None, "Colour of the base, of metal and of what passes through."),

@@ -44,7 +44,7 @@ struct Fourier : Material {
   }
 };
 
-const Register<Fourier> fourier{"material", "fourier", "A tabulated BSDF from a file.",
+const Register<Fourier> fourier{"fourier", "A tabulated BSDF from a file.",
                                 param(&Fourier::bsdffile, "bsdffile", Unit::None,
                                       "The file, in layerlab's format: \"SCATFUN\", version 1. Required."),
                                 bumpmap_param()};

@@ -21,7 +21,6 @@ struct Glass : DielectricSurface {
 };
 
 const Register<Glass> glass{
-    "material",
     "glass",
     "A smooth or rough dielectric: reflects and refracts by Fresnel's equations.",
     param(&Glass::Kr, "Kr", RGB(1.0f), Unit::None, "Scale of the reflection."),

@@ -99,7 +99,6 @@ struct Hair : Material {
 };
 
 const Register<Hair> hair{
-    "material",
     "hair",
     "Hair and fur, for curves; by default brown.",
     param(&Hair::sigma_a, "sigma_a", Unit::None, "Absorption inside, per radius; goes before all other colours."),

@@ -19,7 +19,6 @@ struct KdSubsurface : DielectricSurface {
 };
 
 const Register<KdSubsurface> kdsubsurface{
-    "material",
     "kdsubsurface",
     "A dielectric boundary over a medium of a given colour; the boundary alone is simulated.",
     param(&KdSubsurface::Kr, "Kr", RGB(1.0f), Unit::None, "Scale of the reflection."),

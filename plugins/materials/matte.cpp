@@ -35,9 +35,7 @@ struct Matte : Material {
 };
 
 const Register<Matte> matte{
-    "material",
-    "matte",
-    "Lambertian or Oren-Nayar diffuse reflection.",
+    "matte", "Lambertian or Oren-Nayar diffuse reflection.",
     param(&Matte::Kd, "Kd", RGB(0.5f), Unit::None, "Diffuse reflectance."),
     param(&Matte::sigma, "sigma", 0.0f, Unit::Degrees, "Oren-Nayar roughness, clamped to 0..90; 0 is Lambertian."),
     bumpmap_param()};

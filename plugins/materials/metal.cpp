@@ -66,7 +66,6 @@ RGB copper(double Index::*part) {
 }
 
 const Register<Metal> metal{
-    "material",
     "metal",
     "A rough metal.",
     param(&Metal::eta, "eta", copper(&Index::n), Unit::None, "Index of refraction; copper's unless given."),

@@ -19,7 +19,7 @@ struct Mirror : Material {
   }
 };
 
-const Register<Mirror> mirror{"material", "mirror", "A perfect mirror.",
+const Register<Mirror> mirror{"mirror", "A perfect mirror.",
                               param(&Mirror::Kr, "Kr", RGB(0.9f), Unit::None, "Reflectance, the same at every angle."),
                               bumpmap_param()};
 

@@ -43,9 +43,7 @@ struct Mix : Material {
 };
 
 const Register<Mix> mix{
-    "material",
-    "mix",
-    "A blend of two named materials.",
+    "mix", "A blend of two named materials.",
     param(&Mix::namedmaterial1, "namedmaterial1", Unit::None, "The name of the first material. Required."),
     param(&Mix::namedmaterial2, "namedmaterial2", Unit::None, "The name of the second material. Required."),
     param(&Mix::amount, "amount", RGB(0.5f), Unit::None, "Share of the first material; the rest is the second's.")};

@@ -11,7 +11,7 @@ struct None : Material {
   void lobes(const ShadingBatch& /*s*/, LobeSet& /*out*/) const override {}
 };
 
-const Register<None> none{std::vector<std::string>{""}, "material", "none", "No surface: rays pass on unchanged."};
+const Register<None> none{std::vector<std::string>{""}, "none", "No surface: rays pass on unchanged."};
 
 }  // namespace
 }  // namespace whit

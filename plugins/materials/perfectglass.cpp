@@ -33,7 +33,6 @@ struct PerfectGlass : Material {
 };
 
 const Register<PerfectGlass> perfectglass{
-    "material",
     "perfectglass",
     "A smooth dielectric, by Fresnel's equations.",
     param(&PerfectGlass::Kr, "Kr", RGB(1.0f), Unit::None, "Scale of the reflection."),

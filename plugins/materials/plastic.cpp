@@ -38,7 +38,6 @@ struct Plastic : Material {
 };
 
 const Register<Plastic> plastic{
-    "material",
     "plastic",
     "A diffuse base with a glossy coat.",
     param(&Plastic::Kd, "Kd", RGB(0.25f), Unit::None, "Reflectance of the diffuse base."),

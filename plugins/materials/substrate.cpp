@@ -31,7 +31,6 @@ struct Substrate : Material {
 };
 
 const Register<Substrate> substrate{
-    "material",
     "substrate",
     "A diffuse base under a glossy coat.",
     param(&Substrate::Kd, "Kd", RGB(0.5f), Unit::None, "Reflectance of the diffuse base."),

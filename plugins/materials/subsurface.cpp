@@ -78,7 +78,6 @@ struct Subsurface : DielectricSurface {
 };
 
 const Register<Subsurface> subsurface{
-    "material",
     "subsurface",
     "A dielectric boundary over a scattering medium; the boundary alone is simulated.",
     param(&Subsurface::Kr, "Kr", RGB(1.0f), Unit::None, "Scale of the reflection."),

@@ -44,7 +44,6 @@ struct Translucent : Material {
 };
 
 const Register<Translucent> translucent{
-    "material",
     "translucent",
     "A thin sheet that reflects and transmits, diffusely and glossily.",
     param(&Translucent::Kd, "Kd", RGB(0.25f), Unit::None, "Scale of the diffuse scattering."),

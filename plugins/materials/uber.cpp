@@ -77,7 +77,6 @@ struct Uber : Material {
 };
 
 const Register<Uber> uber{
-    "material",
     "uber",
     "Diffuse, glossy, mirror and refraction together, with an opacity.",
     param(&Uber::Kd, "Kd", RGB(0.25f), Unit::None, "Diffuse reflectance."),

@@ -135,7 +135,7 @@ class Halton final : public Sampler {
 };
 
 const Register<Halton> halton{
-    "sampler", "halton", "Scrambled Halton points: evenly spread in every pixel, for every pair of dimensions.",
+    "halton", "Scrambled Halton points: evenly spread in every pixel, for every pair of dimensions.",
     param(&Halton::pixel_samples, "pixelsamples", 16, Unit::None, "Samples per pixel.", Range{1, kMaxSamples}),
     param(&Halton::pixel_centre, "samplepixelcenter", false, Unit::None,
           "Puts every camera sample at the centre of its pixel.")};

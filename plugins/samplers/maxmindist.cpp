@@ -108,11 +108,10 @@ class MaxMinDist final : public SobolSampler {
   std::vector<uint32_t> heights_;  ///< Empty when there are too many samples for a search.
 };
 
-const Register<MaxMinDist> maxmindist{"sampler", "maxmindist",
-                                      "Film positions far from each other; scrambled Sobol points elsewhere.",
-                                      pixelsamples_param(),
-                                      param(&MaxMinDist::dimensions, "dimensions", 4, Unit::None,
-                                            "Accepted for pbrt's sake; every dimension is as good as the first.")};
+const Register<MaxMinDist> maxmindist{
+    "maxmindist", "Film positions far from each other; scrambled Sobol points elsewhere.", pixelsamples_param(),
+    param(&MaxMinDist::dimensions, "dimensions", 4, Unit::None,
+          "Accepted for pbrt's sake; every dimension is as good as the first.")};
 
 }  // namespace
 }  // namespace whit

@@ -35,7 +35,7 @@ class Random final : public Sampler {
 };
 
 const Register<Random> random_sampler{
-    "sampler", "random", "Independent random numbers.",
+    "random", "Independent random numbers.",
     param(&Random::pixel_samples, "pixelsamples", 4, Unit::None, "Samples per pixel.", Range{1, kMaxSamples})};
 
 }  // namespace

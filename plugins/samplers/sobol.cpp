@@ -43,8 +43,7 @@ class Sobol final : public SobolSampler {
   }
 };
 
-const Register<Sobol> sobol{"sampler", "sobol",
-                            "Scrambled Sobol points: the film and every pair of dimensions evenly covered.",
+const Register<Sobol> sobol{"sobol", "Scrambled Sobol points: the film and every pair of dimensions evenly covered.",
                             pixelsamples_param()};
 
 }  // namespace

@@ -116,7 +116,6 @@ class Stratified final : public Sampler {
 constexpr Range kSide{1, 1 << 16};
 
 const Register<Stratified> stratified{
-    "sampler",
     "stratified",
     "A grid of cells in every pixel, one sample in each.",
     param(&Stratified::xsamples, "xsamples", 4, Unit::None, "Cells across a pixel.", kSide),

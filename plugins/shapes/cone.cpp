@@ -60,9 +60,7 @@ struct Cone final : AnalyticShape {
   AxialQuadric quadric_;
 };
 
-const Register<Cone> cone{"shape",
-                          "cone",
-                          "An open cone with its base in the xy plane and its tip on the z axis.",
+const Register<Cone> cone{"cone", "An open cone with its base in the xy plane and its tip on the z axis.",
                           param(&Cone::radius, "radius", 1.0f, Unit::Length, "Radius of the base.", kNonNegative),
                           param(&Cone::height, "height", 1.0f, Unit::Length, "Height of the tip.", kPositive),
                           param(&Cone::phimax, "phimax", 360.0f, Unit::Degrees,

@@ -138,7 +138,6 @@ struct Curve final : CurveShape {
 };
 
 const Register<Curve> curve{
-    "shape",
     "curve",
     "A curve with a width: hair, grass, ribbons.",
     param(&Curve::P, "P", Unit::Length,

@@ -55,8 +55,7 @@ struct Cylinder final : AnalyticShape {
   Sweep sweep_;
 };
 
-const Register<Cylinder> cylinder{"shape",
-                                  "cylinder",
+const Register<Cylinder> cylinder{"cylinder",
                                   "An open cylinder around the z axis.",
                                   param(&Cylinder::radius, "radius", 1.0f, Unit::Length, "Radius.", kNonNegative),
                                   param(&Cylinder::zmin, "zmin", -1.0f, Unit::Length, "Lower end."),

@@ -85,7 +85,6 @@ struct Disk final : AnalyticShape {
 };
 
 const Register<Disk> disk{
-    "shape",
     "disk",
     "A disk, or a sector of a ring, across the z axis.",
     param(&Disk::height, "height", 0.0f, Unit::Length, "Where on the z axis it lies."),

@@ -49,9 +49,7 @@ struct Heightfield final : MeshShape {
 };
 
 const Register<Heightfield> heightfield{
-    "shape",
-    "heightfield",
-    "A grid of heights over the unit square.",
+    "heightfield", "A grid of heights over the unit square.",
     param(&Heightfield::nu, "nu", Unit::None, "Number of points along x, at least 2. Required.", kNonNegative),
     param(&Heightfield::nv, "nv", Unit::None, "Number of points along y, at least 2. Required.", kNonNegative),
     param(&Heightfield::Pz, "Pz", Unit::Length, "The heights, nu times nv, row by row in x. Required.", kCoordinates)};

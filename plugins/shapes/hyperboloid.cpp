@@ -136,9 +136,7 @@ struct Hyperboloid final : AnalyticShape {
 };
 
 const Register<Hyperboloid> hyperboloid{
-    "shape",
-    "hyperboloid",
-    "A line turned around the z axis, as pbrt-v3 approximates it.",
+    "hyperboloid", "A line turned around the z axis, as pbrt-v3 approximates it.",
     param(&Hyperboloid::p1, "p1", Point{{0, 0, 0}}, Unit::Length, "One end of the line."),
     param(&Hyperboloid::p2, "p2", Point{{1, 1, 1}}, Unit::Length, "Other end of the line."),
     param(&Hyperboloid::phimax, "phimax", 360.0f, Unit::Degrees, "Sweep around z; above 360 is a full turn.",

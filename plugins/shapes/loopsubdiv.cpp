@@ -266,7 +266,6 @@ struct LoopSubdivision final : MeshShape {
 };
 
 const Register<LoopSubdivision> loopsubdiv{
-    "shape",
     "loopsubdiv",
     "Loop's subdivision surface over a triangle mesh.",
     param(&LoopSubdivision::indices, "indices", Unit::None,

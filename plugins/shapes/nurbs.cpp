@@ -187,7 +187,6 @@ struct Nurbs final : MeshShape {
 };
 
 const Register<Nurbs> nurbs{
-    "shape",
     "nurbs",
     "A NURBS surface, diced into triangles.",
     param(&Nurbs::nu, "nu", Unit::None, "Number of control points in u. Required.", kNonNegative),

@@ -68,7 +68,6 @@ struct Paraboloid final : AnalyticShape {
 };
 
 const Register<Paraboloid> paraboloid{
-    "shape",
     "paraboloid",
     "A paraboloid around the z axis, open upwards, with its lowest point at the origin.",
     param(&Paraboloid::radius, "radius", 1.0f, Unit::Length, "Radius at zmax.", kNonNegative),

@@ -90,11 +90,8 @@ struct PlyMeshShape final : MeshShape {
 };
 
 const Register<PlyMeshShape> plymesh{
-    "shape",
-    "plymesh",
-    "A triangle mesh in a PLY file.",
-    param(&PlyMeshShape::filename, "filename", Unit::None, "The PLY file, ascii or binary. Required."),
-    alpha_param(),
+    "plymesh", "A triangle mesh in a PLY file.",
+    param(&PlyMeshShape::filename, "filename", Unit::None, "The PLY file, ascii or binary. Required."), alpha_param(),
     shadowalpha_param()};
 
 }  // namespace

@@ -276,7 +276,6 @@ struct Sphere final : AnalyticShape {
 };
 
 const Register<Sphere> sphere{
-    "shape",
     "sphere",
     "A sphere around the origin, or a part of one.",
     param(&Sphere::radius, "radius", 1.0f, Unit::Length, "Radius.", kNonNegative),

@@ -75,7 +75,6 @@ struct TriangleMesh final : MeshShape {
 };
 
 const Register<TriangleMesh> trianglemesh{
-    "shape",
     "trianglemesh",
     "A triangle mesh given in the scene file.",
     param(&TriangleMesh::indices, "indices", Unit::None, "Three vertex numbers per triangle, counted from 0. Required.",

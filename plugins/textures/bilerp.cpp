@@ -40,15 +40,15 @@ auto corner(T Bilerp<T>::*member, const char* name, float value, const char* doc
 template <class T>
 class RegisterBilerp : public Register2D<Bilerp<T>, T> {
  public:
-  explicit RegisterBilerp(const char* category)
-      : Register2D<Bilerp<T>, T>(category, "bilerp", kDoc, corner(&Bilerp<T>::v00, "v00", 0, "Value at (0, 0)."),
+  RegisterBilerp()
+      : Register2D<Bilerp<T>, T>("bilerp", kDoc, corner(&Bilerp<T>::v00, "v00", 0, "Value at (0, 0)."),
                                  corner(&Bilerp<T>::v01, "v01", 1, "Value at (0, 1)."),
                                  corner(&Bilerp<T>::v10, "v10", 0, "Value at (1, 0)."),
                                  corner(&Bilerp<T>::v11, "v11", 1, "Value at (1, 1).")) {}
 };
 
-const RegisterBilerp<float> bilerp_float{"float texture"};
-const RegisterBilerp<RGB> bilerp_spectrum{"spectrum texture"};
+const RegisterBilerp<float> bilerp_float;
+const RegisterBilerp<RGB> bilerp_spectrum;
 
 }  // namespace
 }  // namespace whit

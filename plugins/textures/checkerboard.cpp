@@ -90,8 +90,8 @@ class RegisterCheckerboard : public Register2D<Checkerboard<T>, T> {
   using C = Checkerboard<T>;
 
  public:
-  explicit RegisterCheckerboard(const char* category)
-      : Register2D<C, T>(category, "checkerboard", kDoc,
+  RegisterCheckerboard()
+      : Register2D<C, T>("checkerboard", kDoc,
                          param(&C::dimension, "dimension", 2, Unit::None,
                                "2: squares in texture coordinates; 3: cubes in space.", Range{2, 3}),
                          param(&C::tex1, "tex1", T(1.0f), Unit::None, "Value in even cells."),
@@ -100,8 +100,8 @@ class RegisterCheckerboard : public Register2D<Checkerboard<T>, T> {
                                 "Antialiasing of squares: over the footprint, or none.")) {}
 };
 
-const RegisterCheckerboard<float> checkerboard_float{"float texture"};
-const RegisterCheckerboard<RGB> checkerboard_spectrum{"spectrum texture"};
+const RegisterCheckerboard<float> checkerboard_float;
+const RegisterCheckerboard<RGB> checkerboard_spectrum;
 
 }  // namespace
 }  // namespace whit

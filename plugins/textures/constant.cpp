@@ -18,10 +18,10 @@ class Constant : public Texture<T> {
 
 constexpr const char* kDoc = "The same value everywhere.";
 
-const Register<Constant<float>> constant_float{"float texture", "constant", kDoc,
+const Register<Constant<float>> constant_float{"constant", kDoc,
                                                param(&Constant<float>::value, "value", 1.0f, Unit::None, "The value.")};
 const Register<Constant<RGB>> constant_spectrum{
-    "spectrum texture", "constant", kDoc, param(&Constant<RGB>::value, "value", RGB(1.0f), Unit::None, "The value.")};
+    "constant", kDoc, param(&Constant<RGB>::value, "value", RGB(1.0f), Unit::None, "The value.")};
 
 }  // namespace
 }  // namespace whit

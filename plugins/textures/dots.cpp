@@ -44,15 +44,15 @@ class RegisterDots : public Register2D<Dots<T>, T> {
   using D = Dots<T>;
 
  public:
-  explicit RegisterDots(const char* category)
-      : Register2D<D, T>(category, "dots", kDoc,
+  RegisterDots()
+      : Register2D<D, T>("dots", kDoc,
                          param(&D::inside, "inside", T(1.0f), Unit::None,
                                "Value between the dots (as in pbrt-v3, which swaps the two)."),
                          param(&D::outside, "outside", T(0.0f), Unit::None, "Value of the dots (as in pbrt-v3).")) {}
 };
 
-const RegisterDots<float> dots_float{"float texture"};
-const RegisterDots<RGB> dots_spectrum{"spectrum texture"};
+const RegisterDots<float> dots_float;
+const RegisterDots<RGB> dots_spectrum;
 
 }  // namespace
 }  // namespace whit

@@ -17,9 +17,9 @@ class Fbm final : public GreyNoise<T> {
 
 constexpr const char* kDoc = "Fractional Brownian motion: a sum of octaves of noise.";
 
-const Register<Fbm<float>> fbm_float{"float texture", "fbm", kDoc, octaves_param(&Fbm<float>::octaves),
+const Register<Fbm<float>> fbm_float{"fbm", kDoc, octaves_param(&Fbm<float>::octaves),
                                      roughness_param(&Fbm<float>::roughness)};
-const Register<Fbm<RGB>> fbm_spectrum{"spectrum texture", "fbm", kDoc, octaves_param(&Fbm<RGB>::octaves),
+const Register<Fbm<RGB>> fbm_spectrum{"fbm", kDoc, octaves_param(&Fbm<RGB>::octaves),
                                       roughness_param(&Fbm<RGB>::roughness)};
 
 }  // namespace

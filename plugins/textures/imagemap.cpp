@@ -59,9 +59,9 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
   using I = ImageMap<T>;
 
  public:
-  explicit RegisterImageMap(const char* category)
+  RegisterImageMap()
       : Register2D<I, T>(
-            category, "imagemap", kDoc,
+            "imagemap", kDoc,
             param(&I::filename, "filename", Unit::None,
                   "The picture's file, in any format that OpenImageIO reads. Required."),
             choice(&I::wrap, "wrap", {"repeat", "black", "clamp"},
@@ -76,8 +76,8 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
                   kPositive)) {}
 };
 
-const RegisterImageMap<float> imagemap_float{"float texture"};
-const RegisterImageMap<RGB> imagemap_spectrum{"spectrum texture"};
+const RegisterImageMap<float> imagemap_float;
+const RegisterImageMap<RGB> imagemap_spectrum;
 
 }  // namespace
 }  // namespace whit

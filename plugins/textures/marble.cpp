@@ -40,7 +40,6 @@ class Marble final : public NoiseTexture<RGB> {
 };
 
 const Register<Marble> marble{
-    "spectrum texture",
     "marble",
     "Veins of marble along y of the texture's space.",
     octaves_param(&Marble::octaves),

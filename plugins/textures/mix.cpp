@@ -29,15 +29,11 @@ class Mix : public Texture<T> {
 constexpr const char* kDoc = "A linear blend: (1 - amount) tex1 + amount tex2.";
 constexpr const char* kAmount = "Share of tex2.";
 
-const Register<Mix<float>> mix_float{"float texture",
-                                     "mix",
-                                     kDoc,
+const Register<Mix<float>> mix_float{"mix", kDoc,
                                      param(&Mix<float>::tex1, "tex1", 0.0f, Unit::None, "Value at amount 0."),
                                      param(&Mix<float>::tex2, "tex2", 1.0f, Unit::None, "Value at amount 1."),
                                      param(&Mix<float>::amount, "amount", 0.5f, Unit::None, kAmount)};
-const Register<Mix<RGB>> mix_spectrum{"spectrum texture",
-                                      "mix",
-                                      kDoc,
+const Register<Mix<RGB>> mix_spectrum{"mix", kDoc,
                                       param(&Mix<RGB>::tex1, "tex1", RGB(0.0f), Unit::None, "Value at amount 0."),
                                       param(&Mix<RGB>::tex2, "tex2", RGB(1.0f), Unit::None, "Value at amount 1."),
                                       param(&Mix<RGB>::amount, "amount", 0.5f, Unit::None, kAmount)};

@@ -28,10 +28,10 @@ class Scale : public Texture<T> {
 
 constexpr const char* kDoc = "The product of two textures.";
 
-const Register<Scale<float>> scale_float{"float texture", "scale", kDoc,
+const Register<Scale<float>> scale_float{"scale", kDoc,
                                          param(&Scale<float>::tex1, "tex1", 1.0f, Unit::None, "First factor."),
                                          param(&Scale<float>::tex2, "tex2", 1.0f, Unit::None, "Second factor.")};
-const Register<Scale<RGB>> scale_spectrum{"spectrum texture", "scale", kDoc,
+const Register<Scale<RGB>> scale_spectrum{"scale", kDoc,
                                           param(&Scale<RGB>::tex1, "tex1", RGB(1.0f), Unit::None, "First factor."),
                                           param(&Scale<RGB>::tex2, "tex2", RGB(1.0f), Unit::None, "Second factor.")};
 

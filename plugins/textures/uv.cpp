@@ -21,7 +21,7 @@ class Uv : public Texture2D<RGB> {
   }
 };
 
-const Register2D<Uv, RGB> uv{"spectrum texture", "uv", "Texture coordinates as colours: red s, green t."};
+const Register2D<Uv, RGB> uv{"uv", "Texture coordinates as colours: red s, green t."};
 
 }  // namespace
 }  // namespace whit

@@ -18,8 +18,8 @@ class Windy final : public GreyNoise<T> {
 
 constexpr const char* kDoc = "Waves of noise, their height modulated by coarser noise. Has no parameters.";
 
-const Register<Windy<float>> windy_float{"float texture", "windy", kDoc};
-const Register<Windy<RGB>> windy_spectrum{"spectrum texture", "windy", kDoc};
+const Register<Windy<float>> windy_float{"windy", kDoc};
+const Register<Windy<RGB>> windy_spectrum{"windy", kDoc};
 
 }  // namespace
 }  // namespace whit

@@ -19,11 +19,9 @@ class Wrinkled final : public GreyNoise<T> {
 
 constexpr const char* kDoc = "A sum of octaves of the absolute value of noise.";
 
-const Register<Wrinkled<float>> wrinkled_float{"float texture", "wrinkled", kDoc,
-                                               octaves_param(&Wrinkled<float>::octaves),
+const Register<Wrinkled<float>> wrinkled_float{"wrinkled", kDoc, octaves_param(&Wrinkled<float>::octaves),
                                                roughness_param(&Wrinkled<float>::roughness)};
-const Register<Wrinkled<RGB>> wrinkled_spectrum{"spectrum texture", "wrinkled", kDoc,
-                                                octaves_param(&Wrinkled<RGB>::octaves),
+const Register<Wrinkled<RGB>> wrinkled_spectrum{"wrinkled", kDoc, octaves_param(&Wrinkled<RGB>::octaves),
                                                 roughness_param(&Wrinkled<RGB>::roughness)};
 
 }  // namespace

@@ -284,14 +284,16 @@ TEST_F(Binding, FileNames) {
   EXPECT_FALSE(bind(strings("file", {"/"})));
 }
 
+/// A kind of plugin of the test's own.
+struct Tested : Plugin {
+  static constexpr const char* kCategory = "registry test";
+};
+
 TEST(Registry, SecondPluginOfANameIsRefused) {
-  PluginInfo a;
-  a.category = "registry test", a.name = "one", a.aliases = {"uno"};
-  add_plugin(a);
-  EXPECT_THROW(add_plugin(a), std::logic_error);
-  PluginInfo b = a;
-  b.name = "two";
-  EXPECT_THROW(add_plugin(b), std::logic_error) << "same alias";
+  const std::vector<std::string> alias{"uno"};
+  const Register<Tested> one(alias, "one", "A test.");
+  EXPECT_THROW(Register<Tested>("one", "The same name."), std::logic_error);
+  EXPECT_THROW(Register<Tested>(alias, "two", "The same alias."), std::logic_error);
   EXPECT_EQ(find_plugin("registry test", "uno"), find_plugin("registry test", "one"));
   EXPECT_EQ(find_plugin("registry test", "two"), nullptr);
 }
