@@ -217,17 +217,6 @@ void alpha_filter(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-/// Embree's assertions end the program for rays that are not finite or absurdly far away.
-template <class Packet>
-bool is_usable(const Packet& ray, int i) {
-  constexpr float kFar = 1.8e18f;
-  const float o = std::max(std::max(std::abs(ray.org_x[i]), std::abs(ray.org_y[i])), std::abs(ray.org_z[i]));
-  const float d = std::max(std::max(std::abs(ray.dir_x[i]), std::abs(ray.dir_y[i])), std::abs(ray.dir_z[i]));
-  // The sums see a NaN, which max() may drop.
-  const float sum = ray.org_x[i] + ray.org_y[i] + ray.org_z[i] + ray.dir_x[i] + ray.dir_y[i] + ray.dir_z[i];
-  return (o <= kFar) & (d <= kFar) & (sum == sum) & (ray.tfar[i] == ray.tfar[i]);
-}
-
 /// Embree's packets of N rays.
 template <int N>
 struct Packets;
@@ -272,7 +261,8 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
   if (rays.t_max) copy(ray.tfar, rays.t_max);
   if (rays.time) copy(ray.time, rays.time);
   for (int i = 0; i < N; ++i) {
-    const bool use = (i < count) & is_usable(ray, i);
+    const Vec3f o(ray.org_x[i], ray.org_y[i], ray.org_z[i]), d(ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]);
+    const bool use = (i < count) & is_traceable(o, d, ray.tfar[i]);
     valid[i] = use ? -1 : 0;
     ray.org_x[i] = use ? ray.org_x[i] : 0.0f;
     ray.org_y[i] = use ? ray.org_y[i] : 0.0f;

@@ -7,7 +7,24 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/vec.h"
+
 namespace whit {
+
+/// Embree's assertions end the program for rays that are not finite or absurdly far away, and some of its ways to trace a
+/// packet look at lanes that are switched off: whatever it is handed must pass this, or be a ray that hits nothing. A ray
+/// that ends before it begins would look like one that was blocked.
+[[gnu::always_inline]] inline bool is_traceable(const Vec3f& o, const Vec3f& d, float t_far) {
+  constexpr float kFar = 1.8e18f;
+  const float origin = std::max(std::max(std::abs(o.x), std::abs(o.y)), std::abs(o.z));
+  const float direction = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
+  // The sums see a NaN, which max() may drop.
+  const float sum = o.x + o.y + o.z + d.x + d.y + d.z;
+  return (origin <= kFar) & (direction <= kFar) & (sum == sum) & (t_far >= 0);
+}
 
 /// One thread's queries with one coherence hint. trace() finds nearest hits for RTCRayHit and its packets, and
 /// occlusion for RTCRay and its packets; `valid` has -1 for lanes to trace, 0 for others.

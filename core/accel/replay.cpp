@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -15,10 +14,11 @@ void RayRecord::add(RayKind kind, const RayLanes& rays) {
   int added = 0;
   for (int i = 0; i < rays.n; ++i) {
     const Vec3f o = rays.o[i], d = rays.d[i];
-    if (!std::isfinite(o.x + o.y + o.z + d.x + d.y + d.z)) continue;
+    const float t_max = rays.t_max ? rays.t_max[i] : std::numeric_limits<float>::infinity();
+    if (!is_traceable(o, d, t_max)) continue;
     to.ox.push_back(o.x), to.oy.push_back(o.y), to.oz.push_back(o.z);
     to.dx.push_back(d.x), to.dy.push_back(d.y), to.dz.push_back(d.z);
-    to.tfar.push_back(rays.t_max ? rays.t_max[i] : std::numeric_limits<float>::infinity());
+    to.tfar.push_back(t_max);
     to.time.push_back(rays.time ? rays.time[i] : 0.0f);
     ++added;
   }
@@ -61,11 +61,25 @@ class Replay {
       RTCRayN_flags(ray, N, i) = 0;
       valid[i] = i < count ? -1 : 0;
     }
+    // Embree takes packets apart that are wider than the processor's vectors, and looks at these lanes all the same.
+    for (size_t i = count; i < N; ++i) switch_off(ray, N, static_cast<unsigned>(i));
     if constexpr (requires { packet.hit; }) {
       RTCHitN* hit = reinterpret_cast<RTCHitN*>(&packet.hit);
-      for (unsigned i = 0; i < N; ++i) RTCHitN_geomID(hit, N, i) = RTC_INVALID_GEOMETRY_ID;
+      for (unsigned i = 0; i < N; ++i) {
+        RTCHitN_geomID(hit, N, i) = RTC_INVALID_GEOMETRY_ID;
+        RTCHitN_instID(hit, N, i, 0) = RTC_INVALID_GEOMETRY_ID;
+      }
     }
     query_.trace(valid, scene_, packet);
+  }
+
+  /// Makes a lane a ray that ends before it begins.
+  static void switch_off(RTCRayN* ray, unsigned width, unsigned i) {
+    RTCRayN_org_x(ray, width, i) = RTCRayN_org_y(ray, width, i) = RTCRayN_org_z(ray, width, i) = 0;
+    RTCRayN_dir_x(ray, width, i) = RTCRayN_dir_y(ray, width, i) = 0;
+    RTCRayN_dir_z(ray, width, i) = 1;
+    RTCRayN_tfar(ray, width, i) = -std::numeric_limits<float>::infinity();
+    RTCRayN_time(ray, width, i) = 0;
   }
 
   RTCScene scene_;

@@ -15,7 +15,7 @@ enum class RayKind : uint8_t { Camera, Secondary, Shadow };
 /// The rays of a render on one thread, in the order and in the batches in which they were traced.
 class RayRecord {
  public:
-  /// Appends a batch; lanes that are not finite are left out, as Embree never sees them.
+  /// Appends a batch; rays that hit nothing because they are not finite are left out, as Embree never sees them.
   void add(RayKind kind, const RayLanes& rays);
   int64_t count(RayKind kind) const { return static_cast<int64_t>(of(kind).tfar.size()); }
 

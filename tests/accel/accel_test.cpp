@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/accel/replay.h"
+#include "tests/accel/instruction_sets.h"
 
 namespace whit {
 namespace {
@@ -163,28 +167,83 @@ TEST(Accel, TheNearestOfMeshAndAnalyticShapeWins) {
   EXPECT_FLOAT_EQ(rays.t[3], 2);
 }
 
-TEST(Accel, EveryInstructionSetFindsTheSame) {
-  // Embree takes packets apart that are wider than the processor's vectors, and then looks at lanes that are switched off.
-  // 37 rays, no multiple of any width, down onto the square and a plate above a part of it; three of them not finite.
-  for (const char* set : {"isa=sse2", "isa=sse4.2", "isa=avx", "isa=avx2", "isa=avx512"}) {
-    const Square square;
-    Plate plate(0.2);
+/// 37 rays, no multiple of any packet's width, down from z = 3 onto the square and a plate above a part of it. Some are
+/// of the kinds that rounding makes of honest ones; those hit nothing.
+struct OddRays {
+  Rays rays{37};
+  std::vector<size_t> bad{0, 5, 9, 11, 15, 16, 20, 23, 31, 36};
+
+  OddRays() {
+    for (size_t i = 0; i < 37; ++i) rays.set(i, {x(i), 0.45f, 3}, {0, 0, -1});
+    rays.t_max[0] = -1, rays.t_max[9] = -kInfinity, rays.t_max[36] = NAN;
+    rays.o[0][5] = NAN, rays.o[1][11] = kInfinity, rays.o[2][15] = 1e19f;
+    rays.d[2][16] = 0, rays.d[2][20] = INFINITY, rays.d[0][23] = NAN, rays.d[1][31] = -3e38f;
+  }
+  static float x(size_t i) { return (static_cast<float>(i) + 0.5f) / 37; }
+  bool is_good(size_t i) const { return std::find(bad.begin(), bad.end(), i) == bad.end(); }
+};
+
+/// The square, and a plate 1 above the middle of it.
+struct SquareAndPlate {
+  Square square;
+  Plate plate{0.2};
+  Accel accel;
+  explicit SquareAndPlate(const std::string& set) : accel({.robust = true, .small_scene = 0, .embree = set}) {
     plate.place(Mat4d().setTranslation(Vec3d(0.5, 0.5, 1)), false);
-    Accel accel({.robust = true, .small_scene = 0, .embree = set});
     accel.add_mesh(Accel::kWorld, square.view(), 0, nullptr);
     accel.add_analytic(Accel::kWorld, plate, 1, nullptr);
-    ASSERT_EQ(accel.build(), "") << set;
-    Rays rays(37);
-    for (size_t i = 0; i < 37; ++i) rays.set(i, {(static_cast<float>(i) + 0.5f) / 37, 0.45f, 3}, {0, 0, -1});
-    rays.o[0][5] = NAN, rays.d[2][20] = INFINITY, rays.t_max[36] = NAN;
-    rays.intersect(accel);
-    rays.occlude(accel);
-    for (size_t i = 0; i < 37; ++i) {
-      const bool usable = i != 5 && i != 20 && i != 36;
-      const bool on_plate = std::abs((static_cast<float>(i) + 0.5f) / 37 - 0.5f) < 0.2f;
-      EXPECT_EQ(rays.shape[i], !usable ? -1 : on_plate ? 1 : 0) << set << " ray " << i;
-      EXPECT_EQ(rays.blocked[i], usable ? 1 : 0) << set << " ray " << i;
-      if (usable) { EXPECT_FLOAT_EQ(rays.t[i], on_plate ? 2 : 3) << set << " ray " << i; }
+    EXPECT_EQ(accel.build(), "") << set;
+  }
+};
+
+TEST(Accel, EveryInstructionSetFindsTheSame) {
+  // Embree takes packets apart that are wider than the processor's vectors, and then looks at lanes that are switched off.
+  for (const std::string& set : test::instruction_sets()) {
+    const SquareAndPlate scene(set);
+    for (const bool coherent : {false, true}) {
+      OddRays odd;
+      Rays& rays = odd.rays;
+      rays.intersect(scene.accel, coherent);
+      rays.occlude(scene.accel);
+      for (size_t i = 0; i < 37; ++i) {
+        const bool on_plate = std::abs(OddRays::x(i) - 0.5f) < 0.2f;
+        EXPECT_EQ(rays.shape[i], !odd.is_good(i) ? -1 : on_plate ? 1 : 0) << set << " ray " << i;
+        EXPECT_EQ(rays.blocked[i], odd.is_good(i) ? 1 : 0) << set << " ray " << i;
+        if (odd.is_good(i)) { EXPECT_FLOAT_EQ(rays.t[i], on_plate ? 2 : 3) << set << " ray " << i; }
+      }
+    }
+  }
+}
+
+/// Leaves NaNs where the next functions will have their variables.
+[[gnu::noinline]] void spoil_stack() {
+  volatile float numbers[16384];
+  for (volatile float& n : numbers) n = NAN;
+}
+
+TEST(Accel, EveryInstructionSetReplaysARecord) {
+  // What a lane beyond a batch's end holds must not matter: Embree ends the program for rays that are not finite.
+  for (const std::string& set : test::instruction_sets()) {
+    SquareAndPlate scene(set);
+    RayRecord record;
+    scene.accel.record(&record);
+    for (const int n : {37, 1, 16, 8, 5, 24}) {
+      OddRays odd;
+      RayLanes lanes = odd.rays.lanes();
+      lanes.n = n;
+      scene.accel.intersect(lanes, odd.rays.hits(), true);
+      scene.accel.intersect(lanes, odd.rays.hits(), false);
+      scene.accel.occluded(lanes, odd.rays.blocked.data());
+    }
+    scene.accel.record(nullptr);
+    for (const RayKind kind : {RayKind::Camera, RayKind::Secondary, RayKind::Shadow}) {
+      // Of the first 37, 1, 16, 8, 5 and 24 rays 9, 1, 5, 2, 1 and 7 are left out: the odd ones but number 16, which has no
+      // direction, and goes nowhere.
+      EXPECT_EQ(record.count(kind), 91 - 25) << set;
+      for (const RayCall call : kRayCalls) {
+        spoil_stack();
+        EXPECT_GE(replay_seconds(scene.accel, record, kind, call), 0) << set;
+      }
     }
   }
 }

@@ -6,6 +6,7 @@
 #include <pmmintrin.h>
 #include <xmmintrin.h>
 
+#include "tests/accel/instruction_sets.h"
 #include "tests/hard/hard_case.h"
 #include "tests/hard/render_text.h"
 #include "tests/plugins/make_plugin.h"
@@ -83,10 +84,11 @@ TEST(Hard, InstructionSetsOfTheRayTracer) {
   HardCase worst({16, "Embree's instruction sets, and coherent or single traversal of packets",
                   "SSE2, SSE4.2, AVX, AVX2, AVX-512 where the processor has them; scales of 1e-12 to 1e12",
                   "relMSE against the picture of the default", 1e-6, ""});
+  const std::vector<std::string> sets = instruction_sets();
   for (const double scale : kScales) {
     const BuiltScene built(scene_at(scale));
     const std::vector<float> as_is = picture(built);
-    for (const char* set : {"isa=sse2", "isa=sse4.2", "isa=avx", "isa=avx2", "isa=avx512"}) {
+    for (const std::string& set : sets) {
       for (const double small_scene : {0.0, 1e9}) {
         trace_with(*built.scene, {.robust = true, .small_scene = small_scene, .embree = set});
         worst.see(relative_mse(picture(built), as_is),
