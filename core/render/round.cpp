@@ -81,7 +81,7 @@ void Round::pass_through_interfaces() {
       ray_o_.set(lanes[i], o[i]);
       if (!ray_rx_o_) continue;
       ray_rx_o_.set(lanes[i], o[i]), ray_ry_o_.set(lanes[i], o[i]);
-      ray_rx_d_.set(lanes[i], d), ray_ry_d_.set(lanes[i], d);
+      ray_rx_d_.set(lanes[i], kNoDifferential), ray_ry_d_.set(lanes[i], kNoDifferential);
     }
     const HitLanes next{arena_.floats(n),         arena_.alloc<int32_t>(n), arena_.alloc<uint32_t>(n),
                         arena_.alloc<int32_t>(n), arena_.floats(n),         arena_.floats(n)};

@@ -86,8 +86,10 @@ void Round::spawn_differentials(const Run& run, bool refraction, const Spawned& 
     const Vec3f mirror_y = wi - dwody + (dndy * cos_o + ns * ddndy) * 2.0f;
     const Vec3f refract_x = wi - dwodx * eta + dndx * mu + ns * (dmu * ddndx);
     const Vec3f refract_y = wi - dwody * eta + dndy * mu + ns * (dmu * ddndy);
-    out.rx_d.set(k, refraction ? refract_x : mirror_x);
-    out.ry_d.set(k, refraction ? refract_y : mirror_y);
+    // What has no differentials sends none on.
+    const bool any_x = hits_.rx_d[k] != kNoDifferential, any_y = hits_.ry_d[k] != kNoDifferential;
+    out.rx_d.set(k, any_x ? (refraction ? refract_x : mirror_x) : kNoDifferential);
+    out.ry_d.set(k, any_y ? (refraction ? refract_y : mirror_y) : kNoDifferential);
   });
 }
 
