@@ -44,8 +44,9 @@ std::string check_table(const FourierTable& t) {
   if (!all_finite(t.mu) || !all_finite(t.a)) return "holds numbers that are not finite";
   for (size_t i = 0; i < t.mu.size(); ++i) {
     if (std::abs(t.mu[i]) > 1) return "has a cosine outside [-1, 1]";
-    if (i > 0 && t.mu[i] <= t.mu[i - 1]) return "has cosines that do not increase";
+    if (i > 0 && t.mu[i] < t.mu[i - 1]) return "has cosines that decrease";
   }
+  if (!(t.mu.front() < t.mu.back())) return "has but one cosine";
   for (size_t k = 0; k < t.first.size(); ++k) {
     const int64_t end = t.first[k] + static_cast<int64_t>(t.order[k]) * t.channels;
     if (t.first[k] < 0 || t.order[k] < 0 || t.order[k] > t.max_order || end > static_cast<int64_t>(t.a.size()))
@@ -61,7 +62,7 @@ float slope(const FourierTable& t, const float* f, int k, int lo) {
   return (f[after] - f[before]) / (mu(after) - mu(before)) * (mu(lo + 1) - mu(lo));
 }
 
-/// One interval of the spline through f: cubic in t in [0, 1].
+/// One interval of the spline through f: cubic in t in [0, 1]. Of no width where a cosine stands twice.
 struct Segment {
   float f0, f1, d0, d1, width;
   /// The integral from 0 to t, times the width.
@@ -71,8 +72,10 @@ struct Segment {
   }
 };
 Segment segment(const FourierTable& t, const float* f, int k) {
-  return {f[k], f[k + 1], slope(t, f, k, k), slope(t, f, k + 1, k),
-          t.mu[static_cast<size_t>(k) + 1] - t.mu[static_cast<size_t>(k)]};
+  const float width = t.mu[static_cast<size_t>(k) + 1] - t.mu[static_cast<size_t>(k)];
+  // Without a width all nodes around may be equal, and the slopes 0 / 0.
+  if (width == 0) return {f[k], f[k + 1], 0, 0, 0};
+  return {f[k], f[k + 1], slope(t, f, k, k), slope(t, f, k + 1, k), width};
 }
 
 /// What sampling needs; the file's own integrals are not relied upon.
@@ -102,8 +105,10 @@ Spline spline_at(const std::vector<float>& nodes, float x) {
   Spline s;
   const int n = static_cast<int>(nodes.size());
   if (!(x >= nodes.front() && x <= nodes.back())) return s;
-  const auto above = std::upper_bound(nodes.begin(), nodes.end(), x) - nodes.begin();
-  const int k = std::clamp(static_cast<int>(above) - 1, 0, n - 2);
+  // An interval of some width: behind all nodes that are not above x, or, at the upper end, before those that equal x.
+  const auto above = std::upper_bound(nodes.begin(), nodes.end(), x);
+  const auto end = above != nodes.end() ? above : std::lower_bound(nodes.begin(), nodes.end(), x);
+  const int k = static_cast<int>(end - nodes.begin()) - 1;
   const float* const at = nodes.data() + k;
   const float width = at[1] - at[0], t = (x - at[0]) / width, t2 = t * t, t3 = t2 * t;
   s.first = k - 1, s.inside = true;

@@ -13,10 +13,12 @@ namespace whit {
 
 /// A table over n x n pairs of cosines, [o * n + i]. i is the direction light travels in (-wi), o that of wo.
 struct FourierTable {
-  float eta = 1;                 ///< Index inside over that outside.
-  int channels = 1;              ///< 1: luminance; 3: luminance, red, blue.
-  int max_order = 0;             ///< The longest series.
-  std::vector<float> mu;         ///< The n cosines, increasing, in [-1, 1].
+  float eta = 1;      ///< Index inside over that outside.
+  int channels = 1;   ///< 1: luminance; 3: luminance, red, blue.
+  int max_order = 0;  ///< The longest series.
+  /// The n cosines, in [-1, 1]. None is below the one before; where two are equal the table may jump. layerlab's have -0
+  /// and 0 in the middle, one for each side.
+  std::vector<float> mu;
   std::vector<int32_t> first;    ///< Where the coefficients of a pair start; those of further channels follow.
   std::vector<int32_t> order;    ///< Their number in one channel.
   std::vector<float> a;          ///< f |cos| = sum over k of a[k] cos(k phi).

@@ -1,6 +1,7 @@
 // Tabulated BSDFs: the file reader and its errors, interpolation, colour, scaling of radiance, densities.
 #include "core/batch/lobe_fourier.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "tests/batch/lobe_bench.h"
@@ -26,19 +27,24 @@ void put(std::string& bytes, T value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
 }
 
+std::vector<double> even_nodes() {
+  std::vector<double> mu;
+  for (int i = 0; i < kNodes; ++i) mu.push_back(-1 + 2.0 * i / (kNodes - 1));
+  return mu;
+}
+
 /// The content of a file that holds `smooth`, in all channels.
-std::string make_file(int channels = 1, float eta = 1) {
+std::string make_file(int channels = 1, float eta = 1, const std::vector<double>& mu = even_nodes()) {
   std::string bytes("SCATFUN\x01", 8);
-  const int pairs = kNodes * kNodes;
-  for (const int32_t v : {1, kNodes, pairs * kOrder * channels, kOrder, channels, 1, 0, 0, 0}) put(bytes, v);
+  const int nodes = static_cast<int>(mu.size()), pairs = nodes * nodes;
+  for (const int32_t v : {1, nodes, pairs * kOrder * channels, kOrder, channels, 1, 0, 0, 0}) put(bytes, v);
   put(bytes, eta);
   for (int i = 0; i < 4; ++i) put(bytes, int32_t{0});
-  const auto mu = [](int i) { return -1 + 2.0 * i / (kNodes - 1); };
-  for (int i = 0; i < kNodes; ++i) put(bytes, static_cast<float>(mu(i)));
+  for (const double m : mu) put(bytes, static_cast<float>(m));
   for (int k = 0; k < pairs; ++k) put(bytes, 0.0f);  // the integrals, which are not used
   for (int k = 0; k < pairs; ++k) put(bytes, int32_t{k * kOrder * channels}), put(bytes, int32_t{kOrder});
   for (int k = 0; k < pairs; ++k) {
-    const double mean = smooth_mean(mu(k / kNodes), mu(k % kNodes));
+    const double mean = smooth_mean(mu[static_cast<size_t>(k / nodes)], mu[static_cast<size_t>(k % nodes)]);
     for (int c = 0; c < channels; ++c) {
       for (const double a : {mean, 0.5 * mean, 0.2 * mean}) put(bytes, static_cast<float>(a * (1 - 0.25 * c)));
     }
@@ -131,6 +137,59 @@ TEST(Fourier, DirectionsBeyondTheTableScatterNothing) {
   EXPECT_EQ(fourier_pdf(table, direction(0.9, 0), direction(0.3, 0)), 0);
 }
 
+TEST(Fourier, CosinesMayStandTwice) {
+  // All files of layerlab's have -0 and 0 in the middle. The function is linear in both cosines, which splines follow
+  // exactly over any nodes; an interval without width is never looked up, and holds nothing to be sampled.
+  std::vector<double> nodes = even_nodes();
+  nodes[kNodes / 2] = -0.0;
+  for (const double again : {-1.0, 0.0, 0.0, 0.5, 1.0, 1.0}) {
+    nodes.insert(std::upper_bound(nodes.begin(), nodes.end(), again), again);
+  }
+  FourierTable table;
+  ASSERT_EQ(parse_fourier_table(make_file(1, 1, nodes), table), "");
+  std::vector<double> cosines = nodes;
+  for (int i = 0; i < 40; ++i) cosines.push_back(std::sin(0.7 * i));
+  for (const double o : cosines) {
+    for (const double i : cosines) {
+      Bench bench(1);
+      add_table(bench, table);
+      bench.s.wo.set(0, direction(o, 1)), bench.wi.set(0, direction(i, 2));
+      bench.evaluate();
+      const bool grazing = bench.s.wo.z[0] == 0 || bench.wi.z[0] == 0;
+      // Along the normal there is no azimuth, and pbrt-v3 takes its cosine to be 1.
+      const double phi = std::abs(o) == 1 || std::abs(i) == 1 ? 0 : 1 - 2 + M_PI;
+      EXPECT_NEAR(bench.f.r[0], grazing ? 0 : smooth(o, -i, phi), 1e-6) << o << ' ' << i;
+    }
+  }
+  for (const double cosine : {0.95, 0.02}) {
+    Bench bench(4096);
+    add_table(bench, table);
+    chi_squared(bench, direction(cosine, 2), "fourier");
+  }
+}
+
+TEST(Fourier, EqualCosinesAreAJump) {
+  // 0.2 up to the first 0, 0.4 from the second on: two nodes off the jump the splines do not see it any more, and near it
+  // they do not overshoot by more than 4/27 of it to either side, the extreme of t (1 - t)^2, whose factor is the slope
+  // that the value on the other side makes.
+  std::vector<double> nodes = even_nodes();
+  nodes.insert(nodes.begin() + kNodes / 2, -0.0);
+  FourierTable table;
+  ASSERT_EQ(parse_fourier_table(make_file(1, 1, nodes), table), "");
+  for (size_t k = 0; k < table.a.size(); ++k) {
+    const size_t pair = k / kOrder, o = pair / nodes.size();
+    table.a[k] = k % kOrder != 0 ? 0.0f : (o <= kNodes / 2 ? 0.2f : 0.4f);
+  }
+  for (const double o : {-0.9, -0.126, -0.1, -1e-3, -1e-7, 1e-7, 1e-3, 0.1, 0.126, 0.9}) {
+    Bench bench(1);
+    add_table(bench, table);
+    bench.s.wo.set(0, direction(o, 1)), bench.wi.set(0, direction(0.3, 2));
+    bench.evaluate();
+    const double side = o < 0 ? 0.2 : 0.4;
+    EXPECT_NEAR(bench.f.r[0], side, std::abs(o) > 0.125 ? 1e-6 : 0.2 * 4 / 27 + 1e-6) << o;
+  }
+}
+
 TEST(Fourier, BrokenFilesAreRefusedWithAReason) {
   const std::string good = make_file();
   const auto problem = [](const std::string& bytes) {
@@ -152,7 +211,8 @@ TEST(Fourier, BrokenFilesAreRefusedWithAReason) {
   EXPECT_EQ(with(44, -1.0f), "has a broken header") << "an index of refraction below 0";
   EXPECT_NE(with(24, int32_t{2}).find("not supported"), std::string::npos) << "two channels";
   EXPECT_NE(with(8, int32_t{0}).find("not supported"), std::string::npos);
-  EXPECT_EQ(with(64 + 4, -1.0f), "has cosines that do not increase");
+  EXPECT_EQ(with(64 + 4, -0.5f), "has cosines that decrease");
+  EXPECT_EQ(problem(make_file(1, 1, std::vector<double>(3, 0.5))), "has but one cosine");
   EXPECT_EQ(with(64, -1.5f), "has a cosine outside [-1, 1]");
   const size_t series = 64 + 4 * (kNodes + kNodes * kNodes);
   EXPECT_EQ(with(series, int32_t{1000000}), "has a series that is longer than its coefficients");
