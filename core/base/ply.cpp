@@ -82,7 +82,7 @@ struct Words {
   std::string_view operator[](size_t i) const { return word[i]; }
 };
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   return '"' + std::string(text.substr(0, 40)) + (text.size() > 40 ? "...\"" : "\"");
 }
 
@@ -100,15 +100,16 @@ std::string parse_format(const Words& w, Header& header) {
   if (w[1] == "ascii") header.format = Format::Ascii;
   else if (w[1] == "binary_little_endian") header.format = Format::LittleEndian;
   else if (w[1] == "binary_big_endian") header.format = Format::BigEndian;
-  else return "PLY format is unknown: " + quoted(w[1]);
-  return w[2] == "1.0" ? "" : "PLY version is unknown: " + quoted(w[2]);
+  else return "PLY format is unknown: " + in_quotes(w[1]);
+  return w[2] == "1.0" ? "" : "PLY version is unknown: " + in_quotes(w[2]);
 }
 
 std::string parse_element(const Words& w, Header& header) {
   Element e;
   if (w.count != 3) return "PLY header has an \"element\" line without name and count";
   const auto [end, code] = std::from_chars(w[2].data(), w[2].data() + w[2].size(), e.count);
-  if (code != std::errc() || end != w[2].data() + w[2].size()) return "PLY element count is no number: " + quoted(w[2]);
+  if (code != std::errc() || end != w[2].data() + w[2].size())
+    return "PLY element count is no number: " + in_quotes(w[2]);
   e.name = w[1];
   header.elements.push_back(std::move(e));
   return {};
@@ -121,12 +122,12 @@ std::string parse_property(const Words& w, Header& header) {
   if (w.count != (p.is_list ? 5u : 3u)) return "PLY header has an incomplete \"property\" line";
   if (p.is_list) {
     const auto type = type_named(w[2]);
-    if (!type || !is_integer(*type)) return "PLY type of a list's length is unknown: " + quoted(w[2]);
+    if (!type || !is_integer(*type)) return "PLY type of a list's length is unknown: " + in_quotes(w[2]);
     p.count_type = *type;
   }
   const std::string_view type_name = w[p.is_list ? 3 : 1];
   const auto type = type_named(type_name);
-  if (!type) return "PLY property type is unknown: " + quoted(type_name);
+  if (!type) return "PLY property type is unknown: " + in_quotes(type_name);
   p.type = *type;
   p.name = w[p.is_list ? 4 : 2];
   header.elements.back().properties.push_back(std::move(p));
@@ -148,7 +149,7 @@ std::string parse_header(std::string_view& rest, Header& header) {
     if (w[0] == "format") error = parse_format(w, header), has_format = true;
     else if (w[0] == "element") error = parse_element(w, header);
     else if (w[0] == "property") error = parse_property(w, header);
-    else error = "PLY header has an unknown line: " + quoted(*line);
+    else error = "PLY header has an unknown line: " + in_quotes(*line);
     if (!error.empty()) return error;
   }
   return has_format ? "" : "PLY header has no \"format\" line";
@@ -226,7 +227,7 @@ class AsciiReader {
   }
   bool failed() const { return failed_; }
   std::string error() const {
-    return bad_.empty() ? "PLY data ends early" : "PLY data has no number in " + quoted(bad_);
+    return bad_.empty() ? "PLY data ends early" : "PLY data has no number in " + in_quotes(bad_);
   }
   static size_t least_size(Type) { return 1; }
 
@@ -384,10 +385,10 @@ class MeshReader {
       for (const Property& p : e.properties) record += Reader::least_size(p.is_list ? p.count_type : p.type);
       // In ascii a separator follows every value but the last of the file.
       if (!kBinary) record *= 2;
-      if (record == 0 && e.count > 0) return "PLY element " + quoted(e.name) + " has no properties";
+      if (record == 0 && e.count > 0) return "PLY element " + in_quotes(e.name) + " has no properties";
       const uint64_t room = kBinary ? left : left + 1;
       if (record > 0 && e.count > room / record) {
-        return "PLY header promises more than the file holds: " + std::to_string(e.count) + " of " + quoted(e.name);
+        return "PLY header promises more than the file holds: " + std::to_string(e.count) + " of " + in_quotes(e.name);
       }
       left -= std::min(left, record * e.count);
     }

@@ -1,11 +1,12 @@
-// The vector, matrix and colour types of the whole program: Imath's, under the names used here.
+// The vector, matrix and colour types of the whole program: Imath's vectors and matrices, under the names used here, and
+// a colour of our own, since Imath's header for colours brings half-precision numbers and the processor's intrinsics
+// into every file.
 //
 // Matrices follow Imath's row-vector convention, p' = p * M, so "first A, then B" is A * B. A pbrt
 // `Transform [...]` lists the matrix in exactly this order, sixteen numbers row by row.
 #pragma once
 
 #include <Imath/ImathBox.h>
-#include <Imath/ImathColor.h>
 #include <Imath/ImathMatrix.h>
 #include <Imath/ImathQuat.h>
 #include <Imath/ImathVec.h>
@@ -21,8 +22,35 @@ using Mat4d = Imath::M44d;
 using Box2i = Imath::Box2i;
 using Box3d = Imath::Box3d;
 
-/// Linear Rec.709 colour: radiance, reflectance or a weight, never display-encoded.
-using RGB = Imath::C3f;
+/// Linear Rec.709 colour: radiance, reflectance or a weight, never display-encoded. Its three channels have a vector's
+/// names, and operators work channel by channel.
+struct RGB {
+  float x, y, z;
+
+  RGB() = default;  // Not initialised, like Imath's vectors.
+  constexpr RGB(float r, float g, float b) : x(r), y(g), z(b) {}
+  constexpr explicit RGB(float grey) : x(grey), y(grey), z(grey) {}
+
+  float& operator[](int channel) { return (&x)[channel]; }
+  const float& operator[](int channel) const { return (&x)[channel]; }
+
+  constexpr RGB& operator+=(const RGB& c) { return x += c.x, y += c.y, z += c.z, *this; }
+  constexpr RGB& operator-=(const RGB& c) { return x -= c.x, y -= c.y, z -= c.z, *this; }
+  constexpr RGB& operator*=(const RGB& c) { return x *= c.x, y *= c.y, z *= c.z, *this; }
+  constexpr RGB& operator/=(const RGB& c) { return x /= c.x, y /= c.y, z /= c.z, *this; }
+  constexpr RGB& operator*=(float s) { return x *= s, y *= s, z *= s, *this; }
+  constexpr RGB& operator/=(float s) { return x /= s, y /= s, z /= s, *this; }
+
+  constexpr RGB operator-() const { return {-x, -y, -z}; }
+  friend constexpr RGB operator+(RGB a, const RGB& b) { return a += b; }
+  friend constexpr RGB operator-(RGB a, const RGB& b) { return a -= b; }
+  friend constexpr RGB operator*(RGB a, const RGB& b) { return a *= b; }
+  friend constexpr RGB operator/(RGB a, const RGB& b) { return a /= b; }
+  friend constexpr RGB operator*(RGB a, float s) { return a *= s; }
+  friend constexpr RGB operator*(float s, RGB a) { return a *= s; }
+  friend constexpr RGB operator/(RGB a, float s) { return a /= s; }
+  friend constexpr bool operator==(const RGB&, const RGB&) = default;
+};
 
 /// Rec.709 luminance Y of a linear colour.
 inline float luminance(const RGB& c) { return 0.212671f * c.x + 0.715160f * c.y + 0.072169f * c.z; }

@@ -140,7 +140,7 @@ struct MipMap::EwaLanes {
       const float major_s = swap ? bx : ax, major_t = swap ? by : ay;
       const float major = std::sqrt(swap ? b2 : a2), minor = std::sqrt(swap ? a2 : b2);
       const bool thin = minor * max_anisotropy < major;
-      const float scale = thin & (minor > 0) ? major / (minor * max_anisotropy) : 1.0f;
+      const float scale = (thin & (minor > 0)) ? major / (minor * max_anisotropy) : 1.0f;
       const float minor_s = (swap ? ax : bx) * scale, minor_t = (swap ? ay : by) * scale;
       const double width_of = static_cast<double>(max_of(minor * scale, std::numeric_limits<float>::min()));
       const float lod = max_of(0.0f, static_cast<float>(last) + static_cast<float>(detail::log2_kernel(width_of)));
