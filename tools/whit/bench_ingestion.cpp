@@ -147,17 +147,4 @@ Ingestion measure_ingestion(const std::string& folder, const IngestionSettings& 
   return out;
 }
 
-nlohmann::json to_json(const Ingestion& i) {
-  const auto spread = [](const Spread& s) { return nlohmann::json{s.low, s.high}; };
-  return {{"text_megabytes", i.text_megabytes},
-          {"text_mb_per_s", i.text_mb_per_s.median},
-          {"text_mb_per_s_spread", spread(i.text_mb_per_s)},
-          {"ply_megabytes", i.ply_megabytes},
-          {"ply_mb_per_s", i.ply_mb_per_s.median},
-          {"ply_mb_per_s_spread", spread(i.ply_mb_per_s)},
-          {"triangles", i.triangles},
-          {"build_mtris_per_s", i.build_mtris_per_s.median},
-          {"build_mtris_per_s_spread", spread(i.build_mtris_per_s)}};
-}
-
 }  // namespace whit

@@ -1,7 +1,6 @@
 // How fast files come in: scene text, PLY meshes, and the ray tracer's structures over them. On one thread.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "tools/whit/spread.h"
@@ -22,7 +21,5 @@ struct Ingestion {
 
 /// Writes the files it needs into `folder`, which must exist. Throws std::runtime_error when that fails.
 Ingestion measure_ingestion(const std::string& folder, const IngestionSettings& settings);
-
-nlohmann::json to_json(const Ingestion& ingestion);
 
 }  // namespace whit

@@ -14,7 +14,6 @@ namespace whit {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-using Json = nlohmann::json;
 
 /// The scene, built for measuring, with the seconds that took; null when it cannot be.
 struct BuiltScene {
@@ -44,23 +43,6 @@ Spread samples_per_core(const Scene& scene, int threads, int runs) {
     if (run > 0) rates.push_back(static_cast<double>(r.statistics.camera_samples) / r.seconds / r.threads);
   }
   return spread_of(rates);
-}
-
-Json rays_per_second(const RenderStatistics& s, double seconds) {
-  const auto rate = [seconds](int64_t n) { return static_cast<double>(n) / seconds; };
-  return {{"camera", rate(s.camera_rays)},
-          {"reflection", rate(s.reflection_rays)},
-          {"refraction", rate(s.refraction_rays)},
-          {"shadow", rate(s.shadow_rays)},
-          {"all", rate(s.rays())}};
-}
-
-Json shares_of(const std::array<double, kStages>& seconds) {
-  double sum = 0;
-  for (const double s : seconds) sum += s;
-  Json shares;
-  for (size_t i = 0; i < kStages; ++i) shares[kStageNames[i]] = seconds[i] / sum;
-  return shares;
 }
 
 /// The share of rays aimed from the camera at points on edges between two triangles that hit nothing up to there.
@@ -99,61 +81,48 @@ int fewer_samples(const Scene& scene, double most) {
   return samples <= most ? 0 : std::max(1, static_cast<int>(scene.samples_per_pixel * most / samples));
 }
 
-Json floor_figures(const Floor& floor) {
-  const char* const names[] = {"camera", "secondary", "shadow"};
-  Json kinds;
-  for (size_t k = 0; k < floor.kinds.size(); ++k) {
-    const FloorOfKind& kind = floor.kinds[k];
-    if (kind.rays == 0) continue;
-    kinds[names[k]] = {{"rays", kind.rays}, {"call", call_name(kind.best_call)}, {"seconds", kind.seconds}};
-  }
-  return kinds;
-}
-
 }  // namespace
 
-Json measure_scene(const std::string& name, const LoadedFile& file, const SceneDescription& world,
-                   const Sources& sources, const BenchSettings& settings, Diagnostics& diagnostics) {
+std::array<double, kStages> SceneFigures::stage_shares() const {
+  std::array<double, kStages> shares = statistics.stage_seconds;
+  const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& s : shares) s /= sum;
+  return shares;
+}
+
+std::optional<SceneFigures> measure_scene(const std::string& name, const LoadedFile& file,
+                                          const SceneDescription& world, const Sources& sources,
+                                          const BenchSettings& settings, Diagnostics& diagnostics) {
   BuildOptions options;
   auto built = build(world, sources, options, diagnostics);
-  if (!built) return nullptr;
+  if (!built) return std::nullopt;
   options.samples_per_pixel = fewer_samples(*built->scene, settings.most_camera_samples);
   if (options.samples_per_pixel > 0) built = build(world, sources, options, diagnostics);
   const Scene& scene = *built->scene;
 
-  const Spread one = samples_per_core(scene, 1, settings.runs), all = samples_per_core(scene, 0, settings.runs);
+  SceneFigures out;
+  out.name = name;
+  out.samples_per_pixel = scene.samples_per_pixel;
+  out.threads = tbb::this_task_arena::max_concurrency();
+  out.samples_per_s = samples_per_core(scene, 1, settings.runs);
+  out.samples_per_s_of_all = samples_per_core(scene, 0, settings.runs);
   RenderOptions timed;
   timed.threads = 1;
   timed.time_stages = true;
   const RenderResult stages = render(scene, timed);
-  const Floor floor = measure_floor(scene, settings.runs);
+  out.statistics = stages.statistics, out.seconds = stages.seconds;
+  out.floor = measure_floor(scene, settings.runs);
 
   options.robust_traversal = false;
   Diagnostics repeated;
   const auto fast = build(world, sources, options, repeated);
-  const int cores = tbb::this_task_arena::max_concurrency();
-  const double triangles = static_cast<double>(scene.triangle_count());
-  return {{"name", name},
-          {"camera_samples", stages.statistics.camera_samples},
-          {"samples_per_pixel", scene.samples_per_pixel},
-          {"camera_samples_per_s_per_core", one.median},
-          {"spread", {one.low, one.high}},
-          {"rays_per_s_per_core", rays_per_second(stages.statistics, stages.seconds)},
-          {"floor_ratio", floor.ratio.median},
-          {"floor_ratio_spread", {floor.ratio.low, floor.ratio.high}},
-          {"floor", floor_figures(floor)},
-          {"stages", shares_of(stages.statistics.stage_seconds)},
-          {"threads", cores},
-          {"scaling", all.median * cores / one.median},
-          {"fast_traversal",
-           {{"camera_samples_per_s_per_core", samples_per_core(*fast->scene, 1, settings.runs).median},
-            {"missed_edges", missed_edges(*fast->scene)},
-            {"missed_edges_robust", missed_edges(scene)}}},
-          {"parse_mb_per_s", static_cast<double>(file.parsed.bytes) / 1e6 / std::max(1e-9, file.parse_seconds)},
-          {"build_mtris_per_s", triangles / 1e6 / built->seconds},
-          {"triangles", scene.triangle_count()},
-          {"invalid_samples", stages.statistics.invalid_samples},
-          {"peak_memory_bytes", peak_memory()}};
+  out.fast_samples_per_s = samples_per_core(*fast->scene, 1, settings.runs).median;
+  out.missed_edges_fast = missed_edges(*fast->scene), out.missed_edges_robust = missed_edges(scene);
+  out.parse_mb_per_s = static_cast<double>(file.parsed.bytes) / 1e6 / std::max(1e-9, file.parse_seconds);
+  out.triangles = static_cast<int64_t>(scene.triangle_count());
+  out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built->seconds;
+  out.peak_memory = peak_memory();
+  return out;
 }
 
 }  // namespace whit

@@ -153,10 +153,13 @@ WorldEnd
 std::string instances_scene() {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> u;
-  std::string text = beginning() + R"(LightSource "infinite" "rgb L" [0.5 0.6 0.8]
+  std::string text = beginning();
+  text += R"(LightSource "infinite" "rgb L" [0.5 0.6 0.8]
 ObjectBegin "ball"
   Material "plastic" "rgb Kd" [0.35 0.12 0.1]
-)" + bumpy_ball(72) + "ObjectEnd\n";
+)";
+  text += bumpy_ball(72);
+  text += "ObjectEnd\n";
   for (int i = 0; i < 10000; ++i) {
     const double x = 4 * u(random) - 2, y = 6 * u(random) - 2, z = 1.5 * u(random) - 1;
     fmt::format_to(to(text),

@@ -8,10 +8,11 @@ namespace whit {
 
 int check_command(const Arguments& args) {
   std::vector<std::string> scenes;
-  CLI::App app("Reports every problem of a scene without rendering. Exit code 1 when there is any.", "whit check");
-  app.add_option("scenes", scenes, "Scene files; standard input without any");
+  const CommandLine command{"whit check",
+                            "Reports every problem of a scene without rendering. Exit code 1 when there is any.",
+                            {{"scenes", &scenes, "Scene files; standard input without any"}}};
   int code = kDone;
-  if (!parse_arguments(app, args, code)) return code;
+  if (!parse_arguments(command, args, code)) return code;
   if (scenes.empty()) scenes.push_back("-");
   for (const std::string& path : scenes) {
     Sources sources;

@@ -1,7 +1,10 @@
+// CLI11 with this program's manners: exit code 2, one line, and a did-you-mean for misspelt flags.
+
 #include "tools/whit/command_line.h"
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "core/base/diagnostics.h"
@@ -31,9 +34,36 @@ std::string unknown_flag(const CLI::App& app, const Arguments& args) {
   return {};
 }
 
+/// A row of the table as CLI11 has it: bare words without a value are its flags, all others its options.
+CLI::Option* add(CLI::App& app, const Flag& flag) {
+  return std::visit(
+      [&](auto* target) {
+        if constexpr (std::is_same_v<decltype(target), bool*>) return app.add_flag(flag.names, *target, flag.help);
+        else return app.add_option(flag.names, *target, flag.help);
+      },
+      flag.target);
+}
+
+void apply(CLI::App& app, CLI::Option& option, const Flag& flag) {
+  const FlagRules& rules = flag.rules;
+  if (rules.least < rules.most) {
+    // The type of the limits is the one that messages and help name.
+    if (std::holds_alternative<int*>(flag.target))
+      option.check(CLI::Range(static_cast<int>(rules.least), static_cast<int>(rules.most)));
+    else option.check(CLI::Range(rules.least, rules.most));
+  }
+  if (!rules.choices.empty()) option.check(CLI::IsMember(rules.choices));
+  if (rules.count > 0) option.expected(rules.count)->allow_extra_args(false);
+  if (rules.excludes) option.excludes(app.get_option(rules.excludes));
+  if (rules.delimiter) option.delimiter(rules.delimiter);
+  option.required(rules.required);
+}
+
 }  // namespace
 
-bool parse_arguments(CLI::App& app, const Arguments& args, int& code) {
+bool parse_arguments(const CommandLine& command, const Arguments& args, int& code) {
+  CLI::App app(command.about, command.program);
+  for (const Flag& flag : command.flags) apply(app, *add(app, flag), flag);
   try {
     std::vector<std::string> reversed(args.rbegin(), args.rend());
     app.parse(reversed);

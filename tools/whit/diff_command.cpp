@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "core/image/compare.h"
 #include "tools/whit/command_line.h"
+#include "tools/whit/json.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -13,17 +12,18 @@ namespace whit {
 int diff_command(const Arguments& args) {
   std::string out_path, ref_path;
   CompareLimits limits;
-  bool json = false, exact = false;
-  CLI::App app("Measures how far a picture is from its reference. Exit code 1 when beyond the limits.", "whit diff");
-  app.add_option("out", out_path, "The picture")->required();
-  app.add_option("reference", ref_path, "The truth")->required();
-  app.add_option("--relmse", limits.relmse, "Limit of the relative mean square error");
-  app.add_option("--ratio", limits.ratio, "Limit of |mean(out) / mean(reference) - 1|");
-  app.add_option("--block", limits.block, "Limit of the largest relative difference of 8x8 blocks");
-  app.add_flag("--exact", exact, "Every pixel must be equal");
-  app.add_flag("--json", json, "Print the measures as JSON");
+  bool as_json = false, exact = false;
+  const CommandLine command{"whit diff",
+                            "Measures how far a picture is from its reference. Exit code 1 when beyond the limits.",
+                            {{"out", &out_path, "The picture", {.required = true}},
+                             {"reference", &ref_path, "The truth", {.required = true}},
+                             {"--relmse", &limits.relmse, "Limit of the relative mean square error"},
+                             {"--ratio", &limits.ratio, "Limit of |mean(out) / mean(reference) - 1|"},
+                             {"--block", &limits.block, "Limit of the largest relative difference of 8x8 blocks"},
+                             {"--exact", &exact, "Every pixel must be equal"},
+                             {"--json", &as_json, "Print the measures as JSON"}}};
   int code = kDone;
-  if (!parse_arguments(app, args, code)) return code;
+  if (!parse_arguments(command, args, code)) return code;
   const Result<Image> out = read_image(out_path), ref = read_image(ref_path);
   for (const auto* r : {&out, &ref}) {
     if (!r->ok()) {
@@ -34,17 +34,17 @@ int diff_command(const Arguments& args) {
   const Comparison c = compare_images(out.value, ref.value);
   std::vector<std::string> why = judge(c, limits);
   if (exact && why.empty() && c.differing_pixels > 0) why.push_back("not equal");
-  if (json) {
-    nlohmann::json j = {{"equal", c.failure.empty() && c.differing_pixels == 0},
-                        {"accepted", why.empty()},
-                        {"why", why},
-                        {"relmse", c.relmse},
-                        {"ratio", c.ratio},
-                        {"block", c.block},
-                        {"max_difference", c.max_difference},
-                        {"differing_pixels", c.differing_pixels}};
-    if (c.shifted) j["shift"] = {c.shift_x, c.shift_y};
-    fmt::print("{}\n", j.dump(1));
+  if (as_json) {
+    Json::Object j{{"equal", c.failure.empty() && c.differing_pixels == 0},
+                   {"accepted", why.empty()},
+                   {"why", why},
+                   {"relmse", c.relmse},
+                   {"ratio", c.ratio},
+                   {"block", c.block},
+                   {"max_difference", c.max_difference},
+                   {"differing_pixels", c.differing_pixels}};
+    if (c.shifted) j.emplace_back("shift", Json::Array{c.shift_x, c.shift_y});
+    fmt::print("{}\n", to_text(j));
   } else if (!c.failure.empty()) {
     fmt::print("{}\n", c.failure);
   } else {

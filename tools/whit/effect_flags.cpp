@@ -4,9 +4,11 @@
 
 namespace whit {
 
-void add_effect_flags(CLI::App& app, EffectFlags& flags) {
-  app.add_option("--without", flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')");
-  app.add_option("--only", flags.only, "Effects to keep of those that the scene calls for")->excludes("--without");
+void add_effect_flags(CommandLine& command, EffectFlags& flags) {
+  command.flags.push_back(
+      {"--without", &flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')"});
+  command.flags.push_back(
+      {"--only", &flags.only, "Effects to keep of those that the scene calls for", {.excludes = "--without"}});
 }
 
 std::string usage_problem(const EffectFlags& flags) {

@@ -14,7 +14,7 @@ struct EffectFlags {
   bool plan_check = false;
 };
 
-void add_effect_flags(CLI::App& app, EffectFlags& flags);
+void add_effect_flags(CommandLine& command, EffectFlags& flags);
 /// "" or what is wrong with them, and the remedy.
 std::string usage_problem(const EffectFlags& flags);
 /// Of flags without a problem.

@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 
 #include "core/scene/left_out.h"
 #include "tools/whit/effect_flags.h"
+#include "tools/whit/json.h"
 #include "tools/whit/load.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // ---- In words ----
 
@@ -107,43 +105,47 @@ void print_world(const PlannedScene& world, const Sources& sources) {
 
 Json describe_use(Effect e, const EffectPlan& plan, const Sources& sources) {
   const EffectUse& use = plan.use(e);
-  Json j{{"effect", effect_name(e)}, {"on", plan.needed.has(e)}, {"doc", effect_info(e).doc}};
-  if (use.count > 0) j["called_for_by"] = use.count;
+  Json::Object j{{"effect", effect_name(e)}, {"on", plan.needed.has(e)}, {"doc", effect_info(e).doc}};
+  if (use.count > 0) j.emplace_back("called_for_by", use.count);
+  Json::Array causes;
   for (const EffectCause& cause : use.causes) {
-    j["causes"].push_back({{"what", cause.what}, {"where", sources.location(cause.where)}});
+    causes.push_back(Json::Object{{"what", cause.what}, {"where", sources.location(cause.where)}});
   }
+  if (!causes.empty()) j.emplace_back("causes", causes);
   if (!plan.needed.has(e)) {
-    j["why_off"] = use.count > 0 ? use.why_off : "nothing calls for it";
+    j.emplace_back("why_off", use.count > 0 ? use.why_off : "nothing calls for it");
     return j;
   }
   const EffectInfo& info = effect_info(e);
-  j["stages"] = info.stages;
-  if (*info.dimensions) j["dimensions"] = info.dimensions;
-  if (info.ray_bytes > 0) j["bytes_per_ray"] = info.ray_bytes;
-  if (info.point_bytes > 0) j["bytes_per_point"] = info.point_bytes;
+  j.emplace_back("stages", info.stages);
+  if (*info.dimensions) j.emplace_back("dimensions", info.dimensions);
+  if (info.ray_bytes > 0) j.emplace_back("bytes_per_ray", info.ray_bytes);
+  if (info.point_bytes > 0) j.emplace_back("bytes_per_point", info.point_bytes);
   return j;
 }
 
 Json describe_left_out(const LeftOut& l, const Sources& sources) {
-  Json j{{"kind", l.kind}, {"name", l.name}, {"where", sources.location(l.where)}, {"reason", l.reason}};
-  for (const LeftOutFile& f : l.files) j["files"].push_back({{"name", f.name}, {"bytes", f.bytes}});
+  Json::Object j{{"kind", l.kind}, {"name", l.name}, {"where", sources.location(l.where)}, {"reason", l.reason}};
+  Json::Array files;
+  for (const LeftOutFile& f : l.files) files.push_back(Json::Object{{"name", f.name}, {"bytes", f.bytes}});
+  if (!files.empty()) j.emplace_back("files", files);
   return j;
 }
 
 Json describe(const PlannedScene& p, const Sources& sources) {
-  Json world{{"effects", Json::array()}, {"left_out", Json::array()}, {"not_simulated", Json::array()}};
-  for_effects(EffectSet::all(), [&](Effect e) { world["effects"].push_back(describe_use(e, p.plan, sources)); });
-  for (const LeftOut& l : find_left_out(p.bound, p.plan)) world["left_out"].push_back(describe_left_out(l, sources));
+  Json::Array effects, left_out, not_simulated;
+  for_effects(EffectSet::all(), [&](Effect e) { effects.push_back(describe_use(e, p.plan, sources)); });
+  for (const LeftOut& l : find_left_out(p.bound, p.plan)) left_out.push_back(describe_left_out(l, sources));
   for (const Ignored& i : p.plan.ignored) {
-    world["not_simulated"].push_back({{"what", i.what}, {"where", sources.location(i.where)}});
+    not_simulated.push_back(Json::Object{{"what", i.what}, {"where", sources.location(i.where)}});
   }
-  return world;
+  return Json::Object{{"effects", effects}, {"left_out", left_out}, {"not_simulated", not_simulated}};
 }
 
 void print_json(const std::vector<PlannedScene>& worlds, const Sources& sources) {
-  Json all{{"worlds", Json::array()}};
-  for (const PlannedScene& world : worlds) all["worlds"].push_back(describe(world, sources));
-  fmt::print("{}\n", all.dump(1, ' ', false, Json::error_handler_t::replace));  // Names need not be UTF-8.
+  Json::Array described;
+  for (const PlannedScene& world : worlds) described.push_back(describe(world, sources));
+  fmt::print("{}\n", to_text(Json::Object{{"worlds", described}}));
 }
 
 }  // namespace
@@ -152,13 +154,13 @@ int explain_command(const Arguments& args) {
   std::string path;
   bool as_json = false;
   EffectFlags flags;
-  CLI::App app("Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
-               "whit explain");
-  app.add_option("scene", path, "Scene file; standard input without");
-  add_effect_flags(app, flags);
-  app.add_flag("--json", as_json, "Print the plan as JSON");
+  CommandLine command{"whit explain",
+                      "Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
+                      {{"scene", &path, "Scene file; standard input without"}}};
+  add_effect_flags(command, flags);
+  command.flags.push_back({"--json", &as_json, "Print the plan as JSON"});
   int code = kDone;
-  if (!parse_arguments(app, args, code)) return code;
+  if (!parse_arguments(command, args, code)) return code;
   if (const std::string problem = usage_problem(flags); !problem.empty()) {
     say("whit explain: " + problem);
     return kUsage;

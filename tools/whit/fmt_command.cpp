@@ -40,13 +40,14 @@ int fmt_command(const Arguments& args) {
   std::string path;
   bool in_place = false;
   FormatOptions options;
-  CLI::App app("Writes a scene file in normal form.", "whit fmt");
-  app.add_option("scene", path, "Scene file; standard input without");
-  app.add_flag("--in-place,-i", in_place, "Replace the file instead of printing");
-  app.add_flag("--expand", options.expand_includes, "Put included files in place of their Include");
-  app.add_flag("--toply", options.to_ply, "Write large inline meshes to PLY files");
+  const CommandLine command{"whit fmt",
+                            "Writes a scene file in normal form.",
+                            {{"scene", &path, "Scene file; standard input without"},
+                             {"--in-place,-i", &in_place, "Replace the file instead of printing"},
+                             {"--expand", &options.expand_includes, "Put included files in place of their Include"},
+                             {"--toply", &options.to_ply, "Write large inline meshes to PLY files"}}};
   int code = kDone;
-  if (!parse_arguments(app, args, code)) return code;
+  if (!parse_arguments(command, args, code)) return code;
   if (in_place && path.empty()) {
     say("whit fmt: --in-place needs a file");
     return kUsage;

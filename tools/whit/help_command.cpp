@@ -5,18 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/plugin/registry.h"
 #include "parser/statements.h"
 #include "tools/whit/commands.h"
+#include "tools/whit/json.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // ---- For people ----
 
@@ -92,47 +90,45 @@ void print_effects() {
 // ---- For machines ----
 
 Json describe(const ParamSpec& p) {
-  Json j{{"name", p.name}, {"types", Json::array()}};
-  for (const ParamType type : p.accepts) j["types"].push_back(param_type_name(type));
-  if (!p.default_text.empty()) j["default"] = p.default_text;
-  if (p.unit != Unit::None) j["unit"] = unit_name(p.unit);
+  Json::Array types;
+  for (const ParamType type : p.accepts) types.push_back(param_type_name(type));
+  Json::Object j{{"name", p.name}, {"types", types}};
+  if (!p.default_text.empty()) j.emplace_back("default", p.default_text);
+  if (p.unit != Unit::None) j.emplace_back("unit", unit_name(p.unit));
   if (const std::string limits = limits_text(p.range); !limits.empty()) {
-    j["range"] = limits;
-    if (std::isfinite(p.range.min)) j["minimum"] = p.range.min;
-    if (std::isfinite(p.range.max)) j["maximum"] = p.range.max;
+    j.emplace_back("range", limits);
+    if (std::isfinite(p.range.min)) j.emplace_back("minimum", p.range.min);
+    if (std::isfinite(p.range.max)) j.emplace_back("maximum", p.range.max);
   }
-  if (!p.choices.empty()) j["choices"] = p.choices;
-  j["doc"] = p.doc;
+  if (!p.choices.empty()) j.emplace_back("choices", p.choices);
+  j.emplace_back("doc", p.doc);
   return j;
 }
 
 Json describe(const PluginInfo& p) {
-  Json j{{"category", p.category},
-         {"name", p.name},
-         {"aliases", p.aliases},
-         {"doc", p.doc},
-         {"parameters", Json::array()}};
-  for (const ParamSpec& spec : p.params) j["parameters"].push_back(describe(spec));
-  return j;
+  Json::Array parameters;
+  for (const ParamSpec& spec : p.params) parameters.push_back(describe(spec));
+  return Json::Object{
+      {"category", p.category}, {"name", p.name}, {"aliases", p.aliases}, {"doc", p.doc}, {"parameters", parameters}};
 }
 
 Json describe(const StatementRow& s) {
   constexpr const char* kBlocks[] = {"options", "world", "both"};
-  return {{"name", s.name},
-          {"arguments", s.arguments.usage},
-          {"block", kBlocks[static_cast<int>(s.block)]},
-          {"doc", s.doc}};
+  return Json::Object{{"name", s.name},
+                      {"arguments", s.arguments.usage},
+                      {"block", kBlocks[static_cast<int>(s.block)]},
+                      {"doc", s.doc}};
 }
 
 void print_json() {
-  Json all{{"plugins", Json::array()}, {"statements", Json::array()}, {"effects", Json::array()}};
-  for (const PluginInfo* p : list_plugins()) all["plugins"].push_back(describe(*p));
-  for (const StatementRow& s : statements()) all["statements"].push_back(describe(s));
+  Json::Array plugins, rows, effects;
+  for (const PluginInfo* p : list_plugins()) plugins.push_back(describe(*p));
+  for (const StatementRow& s : statements()) rows.push_back(describe(s));
   for_effects(EffectSet::all(), [&](Effect e) {
     const EffectInfo& info = effect_info(e);
-    all["effects"].push_back({{"name", info.name}, {"doc", info.doc}, {"without", info.off}});
+    effects.push_back(Json::Object{{"name", info.name}, {"doc", info.doc}, {"without", info.off}});
   });
-  fmt::print("{}\n", all.dump(1));
+  fmt::print("{}\n", to_text(Json::Object{{"plugins", plugins}, {"statements", rows}, {"effects", effects}}));
 }
 
 std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }

@@ -9,6 +9,7 @@
 #include "core/base/diagnostics.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/terminal.h"
+#include "tools/whit/version.h"
 
 namespace whit {
 
@@ -42,7 +43,7 @@ int dispatch(const Arguments& args) {
     }
     if (args[0] == "--help" || args[0] == "-h") return help_command({});
     if (args[0] == "--version") {
-      fmt::print("whit {}\n", WHIT_VERSION);
+      fmt::print("whit {}\n", version());
       return kDone;
     }
   }

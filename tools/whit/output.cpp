@@ -45,7 +45,7 @@ std::string plan_output(const OutputRequest& request, const Film& film, OutputPl
   DisplaySpec spec;
   spec.config_path = request.ocio;
   spec.view = !request.view.empty() ? request.view : film.view();
-  spec.exposure = static_cast<float>(request.exposure_given ? request.exposure : film.exposure());
+  spec.exposure = static_cast<float>(request.exposure.value_or(film.exposure()));
   DisplayResult display = make_display_transform(spec);
   plan.display = std::move(display.transform);
   return display.error;

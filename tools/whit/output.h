@@ -1,6 +1,8 @@
 // Where pictures go: names, the linear file, the display file beside it.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,12 +21,11 @@ struct OutputPlan {
 };
 
 struct OutputRequest {
-  std::string outfile;     ///< --outfile; "" takes the film's.
-  std::string scene_path;  ///< For the name when the film has none.
-  std::string display;     ///< --display FILE; "" derives it from the main file, "none" writes none.
-  std::string view, ocio;  ///< --view, --ocio; "" takes the film's or the default.
-  bool exposure_given = false;
-  double exposure = 0;
+  std::string outfile;             ///< --outfile; "" takes the film's.
+  std::string scene_path;          ///< For the name when the film has none.
+  std::string display;             ///< --display FILE; "" derives it from the main file, "none" writes none.
+  std::string view, ocio;          ///< --view, --ocio; "" takes the film's or the default.
+  std::optional<double> exposure;  ///< --exposure; none takes the film's.
   bool full_float = false;
 };
 

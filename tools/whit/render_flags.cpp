@@ -1,0 +1,133 @@
+#include "tools/whit/render_flags.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "tools/whit/command_line.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+namespace {
+
+/// pbrt takes the crop window as four arguments; commas and '=' serve too.
+Arguments split_lists(const Arguments& args) {
+  Arguments out;
+  for (const std::string& arg : args) {
+    const auto is_list = [](const std::string& flag) { return flag == "--cropwindow" || flag == "--pixel"; };
+    const size_t equals = arg.find('=');
+    std::string rest = arg;
+    if (equals != std::string::npos && is_list(arg.substr(0, equals))) {
+      out.push_back(arg.substr(0, equals));
+      rest = arg.substr(equals + 1);
+    }
+    const bool list = !out.empty() && is_list(out.back());
+    for (size_t comma; list && (comma = rest.find(',')) != std::string::npos; rest = rest.substr(comma + 1)) {
+      out.push_back(rest.substr(0, comma));
+    }
+    out.push_back(rest);
+  }
+  return out;
+}
+
+// The effects' flags stand between these two tables.
+
+std::vector<Flag> flags_of(RenderSettings& s) {
+  return {
+      {"scenes", &s.scenes, "Scene files; standard input without any"},
+      {"--outfile,-o", &s.output.outfile, "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)"},
+      {"--display", &s.output.display, "Display picture beside a linear one; 'none' for none (default: .png)"},
+      {"--nthreads", &s.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
+      {"--cropwindow", &s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]", {.count = 4}},
+      {"--spp", &s.spp, "Samples per pixel, instead of the scene's", {.least = 1, .most = 1 << 30}},
+      {"--seed", &s.seed, "Seed of the random numbers"},
+      {"--pixel", &s.pixel, "Render one pixel: x,y", {.count = 2}},
+      {"--debug-pixel", &s.debug_pixel, "Say how a pixel comes about, without a picture: x,y or x,y,sample"},
+  };
+}
+
+std::vector<Flag> more_flags_of(RenderSettings& s) {
+  return {
+      {"--plan-check", &s.effects.plan_check, "Run every stage, called for or not, for the same picture: a test"},
+      {"--view", &s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's"},
+      {"--ocio", &s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one"},
+      {"--exposure", &s.output.exposure, "Stops by which the display picture is brightened"},
+      {"--type", &s.half_or_float, "Numbers of an .exr: half or float", {.choices = {"half", "float"}}},
+      {"--traversal", &s.traversal, "robust (watertight) or fast", {.choices = {"robust", "fast"}}},
+      {"--texture-memory", &s.texture_memory, "MiB of decoded textures at most", {.least = 1, .most = 1e9}},
+      {"--quick", &s.quick, "A quarter of the resolution each way, one sample per pixel"},
+      {"--quiet", &s.quiet, "No progress and no summary; problems are still reported"},
+      {"--strict", &s.strict, "Warnings are errors"},
+      {"--keep-going", &s.keep_going, "Render what is usable despite errors"},
+      {"--stats", &s.stats, "More figures at the end"},
+      {"--cat", &s.cat, "Print the scene in normal form instead of rendering"},
+      {"--toply", &s.toply, "The same, with large meshes written to PLY files"},
+      {"--display-server", &s.display_server, "Show the picture while it is made: host:port of a tev viewer"},
+      {"--logdir", &s.log_dir, "Folder for a log file of the messages"},
+      {"--minloglevel", &s.min_log_level, "2 and above: errors only"},
+      {"--v", &s.verbosity, "Verbosity: 1 and above says each step"},
+      {"--verbose", &s.verbose, "The same as --v 1"},
+  };
+}
+
+/// A flag whose values make no sense is wrong usage.
+std::string usage_problem(const RenderSettings& s) {
+  if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
+                           s.crop[2] >= 0 && s.crop[3] <= 1)) {
+    return "--cropwindow needs x0 < x1 and y0 < y1 within [0,1]";
+  }
+  if (!s.output.outfile.empty() && s.scenes.size() > 1) {
+    return "--outfile with several scenes would write them over each other";
+  }
+  if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
+    return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
+  }
+  return usage_problem(s.effects);
+}
+
+/// Files that must be there before the first scene is rendered; "" or the first problem.
+std::string file_problem(const RenderSettings& s) {
+  for (const std::string& scene : s.scenes) {
+    std::error_code error;
+    if (scene != "-" && !std::filesystem::exists(scene, error))
+      return fmt::format("cannot open \"{}\": no such file", scene);
+  }
+  if (!s.log_dir.empty() && !std::filesystem::is_directory(s.log_dir)) {
+    return fmt::format("--logdir: there is no folder \"{}\"", s.log_dir);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::vector<int> numbers_of(const std::string& text) {
+  std::vector<int> numbers;
+  const char *at = text.data(), *end = at + text.size();
+  for (int number = 0;; ++at) {
+    const auto [next, error] = std::from_chars(at, end, number);
+    if (error != std::errc()) return {};
+    numbers.push_back(number);
+    at = next;
+    if (at == end) break;
+    if (*at != ',' || numbers.size() == 3) return {};
+  }
+  return numbers;
+}
+
+bool read_render_flags(const Arguments& args, RenderSettings& settings, int& code) {
+  CommandLine command{"whit", "Renders pbrt-v3 scene files.", flags_of(settings)};
+  add_effect_flags(command, settings.effects);
+  for (const Flag& flag : more_flags_of(settings)) command.flags.push_back(flag);
+  if (!parse_arguments(command, split_lists(args), code)) return false;
+  for (const std::string& a : args) settings.command_line += (settings.command_line.empty() ? "whit " : " ") + a;
+  std::string problem = usage_problem(settings);
+  code = kUsage;
+  if (settings.scenes.empty()) settings.scenes.push_back("-");
+  if (problem.empty()) problem = file_problem(settings), code = kFileError;
+  if (problem.empty()) return true;
+  say("whit: " + problem);
+  return false;
+}
+
+}  // namespace whit

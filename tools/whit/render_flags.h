@@ -1,0 +1,37 @@
+// What `whit render` is asked to do.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tools/whit/commands.h"
+#include "tools/whit/effect_flags.h"
+#include "tools/whit/output.h"
+
+namespace whit {
+
+struct RenderSettings {
+  std::vector<std::string> scenes;
+  OutputRequest output;
+  std::vector<double> crop;
+  std::vector<int> pixel;
+  std::string debug_pixel;
+  EffectFlags effects;
+  int threads = 0, spp = 0;
+  uint32_t seed = 0;
+  double texture_memory = 1024;
+  bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;
+  bool cat = false, toply = false;
+  int verbosity = 0, min_log_level = 0;
+  std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
+  std::string command_line;
+};
+
+/// Reads the arguments into settings. Returns true when the command should go on; otherwise `code` is what to
+/// exit with, and what is wrong has been printed.
+bool read_render_flags(const Arguments& args, RenderSettings& settings, int& code);
+
+/// The two or three whole numbers of "x,y,sample"; none when the text is anything else.
+std::vector<int> numbers_of(const std::string& text);
+
+}  // namespace whit

@@ -1,0 +1,73 @@
+#include "tools/whit/render_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/accel/accel.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+namespace {
+
+void more_statistics(const RenderOutcome& outcome) {
+  const Scene& scene = outcome.scene;
+  const RenderStatistics& s = outcome.result.statistics;
+  const StepTimes& times = outcome.times;
+  const TextureStatistics t = outcome.textures.statistics();
+  const BuildSeconds& b = scene.build_seconds;
+  say(fmt::format(
+      "ready to trace after {}: geometry read in {}, textures and materials prepared in {}, geometry moved to "
+      "render space in {}, ray tracer built in {}; {} resident after parsing.",
+      duration_text(times.parse + times.plan + times.build), duration_text(b.read), duration_text(b.prepare),
+      duration_text(b.bake), duration_text(b.accelerate), bytes_text(outcome.parsed_memory)));
+  say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
+                  bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(), scene.instances.size(),
+                  scene.lights.size()));
+  say(fmt::format("{} surface points, {} footprints, {} interface crossings.", count_text(s.surface_points),
+                  count_text(s.footprints), count_text(s.passing_rays)));
+  say(fmt::format("{} time samples, {} lens samples, {} alpha tests, {} texture values.", count_text(s.time_samples),
+                  count_text(s.lens_samples), count_text(s.alpha_tests), count_text(s.texture_values)));
+  say(fmt::format("{} times a light could reach none of a batch of points, and was skipped.",
+                  count_text(s.lights_skipped)));
+  say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
+                  t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
+}
+
+}  // namespace
+
+void report_invalid(const RenderStatistics& s) {
+  say(fmt::format(
+      "whit: warning: {} samples were not valid (NaN, infinite or of negative luminance) and were left out; "
+      "the first is sample {} of "
+      "pixel {},{} (--debug-pixel {},{},{} tells how it comes about)",
+      s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y,
+      s.first_invalid_pixel.x, s.first_invalid_pixel.y, s.first_invalid_sample));
+}
+
+void summarise(const RenderOutcome& outcome, bool with_statistics) {
+  const auto& [scene, r, output, textures, times, unread_files, parsed_memory] = outcome;
+  const RenderStatistics& s = r.statistics;
+  say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times.parse),
+                  duration_text(times.plan), duration_text(times.build), duration_text(times.render),
+                  duration_text(times.write), r.threads, r.threads == 1 ? "" : "s"));
+  say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow; {:.2f} Mrays/s.", count_text(s.rays()),
+                  count_text(s.camera_rays), count_text(s.reflection_rays), count_text(s.refraction_rays),
+                  count_text(s.shadow_rays), s.rays() / std::max(1e-9, r.seconds) / 1e6));
+  say(fmt::format("{} samples per pixel, {} triangles, peak memory {}, invalid samples {}.", scene.samples_per_pixel,
+                  count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
+                  s.invalid_samples));
+  if (const size_t n = unread_files; n > 0)
+    say(fmt::format("{} file{} of objects that are never placed {} not read (whit explain lists {}).", n,
+                    n == 1 ? "" : "s", n == 1 ? "was" : "were", n == 1 ? "it" : "them"));
+  if (with_statistics) more_statistics(outcome);
+  if (is_linear_format(output.main_file)) {
+    say(fmt::format("linear:  {}", output.main_file));
+    if (!output.display_file.empty())
+      say(fmt::format("display: {}  [{}]", output.display_file, output.display->describe()));
+  } else {
+    say(fmt::format("display: {}  [{}]", output.main_file, output.display->describe()));
+  }
+}
+
+}  // namespace whit

@@ -1,0 +1,32 @@
+// What `whit render` says when a picture is done.
+#pragma once
+
+#include "core/render/render.h"
+#include "core/scene/scene.h"
+#include "tools/whit/output.h"
+
+namespace whit {
+
+/// Seconds of each step.
+struct StepTimes {
+  double parse = 0, plan = 0, build = 0, render = 0, write = 0;
+};
+
+/// A picture that was made, and what making it took.
+struct RenderOutcome {
+  const Scene& scene;
+  const RenderResult& result;
+  const OutputPlan& output;
+  const TextureStore& textures;
+  StepTimes times;
+  size_t unread_files = 0;   ///< Files of objects that this world never places.
+  double parsed_memory = 0;  ///< Resident after parsing, in bytes.
+};
+
+/// That there were samples without a valid radiance.
+void report_invalid(const RenderStatistics& statistics);
+
+/// The lines at the end of a render, with more figures if wanted (--stats).
+void summarise(const RenderOutcome& outcome, bool with_statistics);
+
+}  // namespace whit
