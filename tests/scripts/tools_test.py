@@ -21,6 +21,8 @@ def shell_scripts():
 def run(*command, path=None, **environment):
     """Exit code and everything said; `path` is a folder of made-up programs that come first."""
     env = {**os.environ, **environment}
+    if "WHIT_SKIP_DEPS" not in environment:
+        env.pop("WHIT_SKIP_DEPS", None)  # What whoever runs the tests has set is not what is tested.
     if path:
         env["PATH"] = path + os.pathsep + env["PATH"]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL, text=True,
@@ -148,10 +150,43 @@ class Render(Temporary):
         self.assertEqual(run(script, "a.pbrt"), (1, "broken\n"))
 
 
+class BuildRelease(Temporary):
+    """tools/build-release with made-up cmake and ninja."""
+
+    def build(self, dry, ninja):
+        script = self.copy("tools/build-release")
+        self.copy("CMakePresets.json")
+        self.program("cmake", 'mkdir -p build/release; : >build/release/build.ninja\n'
+                     'printf "CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nWHIT_TESTS:BOOL=OFF\\n" "$PWD" '
+                     '>build/release/CMakeCache.txt\n')
+        self.program("nproc", "echo 2\n")
+        self.program("ninja", 'for a in "$@"; do [[ $a != -n ]] || { %s exit 0; }; done\n%s' % (dry, ninja))
+        return run(script, "whit", path=self.programs)
+
+    def test_it_says_beforehand_how_long_it_may_take(self):
+        code, said = self.build("echo '[190/190] Linking';", "echo '[190/190] Linking'\n")
+        self.assertEqual(code, 0)
+        # 190 steps of 3 s on 2 cores are 285 s.
+        self.assertIn("190 steps, which may take about 5 minutes on 2 cores\n", said)
+        self.assertIn("built in 0 s\n", said)
+
+    def test_silent_when_nothing_is_to_do(self):
+        nothing = "echo 'ninja: no work to do.'"
+        self.build(nothing + ";", nothing + "\n")
+        script = self.folder + "/repository/tools/build-release"
+        self.assertEqual(run(script, "whit", path=self.programs), (0, ""))
+
+    def test_a_failure_shows_the_compilers_words(self):
+        code, said = self.build("echo '[9/9] x';", "echo '[1/9] Building a'; echo 'a.cpp:1: error: no'; exit 1\n")
+        self.assertEqual(code, 1)
+        self.assertIn("a.cpp:1: error: no\nthe build failed\n", said)
+        self.assertNotIn("Building a", said)
+
+
 class Summary(Temporary):
     """tools/test with made-up checks, build and ctest."""
 
-    def result(self, includes="", build="", junit='tests="5" failures="0" disabled="0" skipped="0"', log="", status=0):
+    def result(self, *arguments, includes="", build="", junit='tests="5" failures="0" disabled="0" skipped="0"', log="", status=0):
         script = self.copy("tools/test")
         for name, body in {"install-deps": "", "check-includes": includes, "check-format": "",
                            "build-release": build}.items():
@@ -162,12 +197,28 @@ printf '<?xml version="1.0"?>\\n<testsuite name="x"\\n\\t%s\\n\\thostname="">\\n
 printf '%s' '{}'
 exit {}
 """.format(junit, log, status))
-        code, said = run(script, path=self.programs)
+        code, said = run(script, *(arguments or ("-R", "some")), path=self.programs)
         return code, said, said.splitlines()[-1]
 
     def test_all_is_well(self):
         code, _, last = self.result()
         self.assertEqual((code, last), (0, "7 passed, 0 failed"))
+
+    def test_the_quick_tests_run_again_with_sanitizers(self):
+        code, said, last = self.result("", build='echo "built ${WHIT_PRESET-release}"\n')
+        self.assertNotIn("built asan", said)  # An argument, though an empty one, asks for less.
+        script = self.folder + "/repository/tools/test"
+        code, said = run(script, path=self.programs)
+        self.assertIn("built asan", said)
+        self.assertEqual((code, said.splitlines()[-1]), (0, "12 passed, 0 failed"))
+        self.program("ctest", """
+while [[ $# -gt 0 ]]; do [[ $1 != --output-junit ]] || out=$2; [[ $1 != */asan ]] || asan=1; shift; done
+printf '<testsuite name="x" tests="5" failures="%d" disabled="0" skipped="0"/>\n' "${asan-0}" >"$out"
+[[ ${asan-0} == 0 ]] || { printf 'The following tests FAILED:\n\t  2 - two (Failed)\n'; exit 8; }
+""")
+        code, said = run(script, path=self.programs)
+        self.assertEqual((code, said.splitlines()[-1]), (1, "11 passed, 1 failed"))
+        self.assertIn("FAILED: asan: two\n", said)
 
     def test_a_check_fails(self):
         code, said, last = self.result(includes="echo the offence; exit 1\n")
