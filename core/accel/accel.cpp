@@ -20,6 +20,7 @@ struct GeometryUser {
   const AnalyticShape* analytic = nullptr;
   const AlphaTest* alpha = nullptr;
   CurveView curves{};
+  const ExactTriangle* triangles = nullptr;
   RTCBounds bounds{};           ///< Of an analytic shape.
   int unshaded_by_itself = -2;  ///< The number of a shape that cannot shade itself; -2 is no shape, nor no target.
 };
@@ -195,6 +196,61 @@ void curve_intersect(const RTCIntersectFunctionNArguments* args) {
 void curve_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
   trace_curve(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, const CurveHit&) {
+    RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
+  });
+}
+
+void exact_bounds(const RTCBoundsFunctionArguments* args) {
+  const ExactTriangle& t = static_cast<const GeometryUser*>(args->geometryUserPtr)->triangles[args->primID];
+  Box3d box(t.a);
+  box.extendBy(t.b), box.extendBy(t.c);
+  const double reach = t.error + std::max({t.reach[0], t.reach[1], t.reach[2]});
+  box.min -= Vec3d(reach), box.max += Vec3d(reach);
+  set_bounds(box, *args->bounds_o);
+}
+
+/// Meets a packet with a triangle in double precision and hands what the alpha test leaves standing to
+/// accept(lane, t, weights).
+template <class Accept>
+void trace_exact(const GeometryUser& user, unsigned prim, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
+                 const Accept& accept) {
+  const ExactTriangle& triangle = user.triangles[prim];
+  for (unsigned i = 0; i < width; ++i) {
+    if (!valid[i]) continue;
+    const Vec3d o(RTCRayN_org_x(rays, width, i), RTCRayN_org_y(rays, width, i), RTCRayN_org_z(rays, width, i));
+    const Vec3d d(RTCRayN_dir_x(rays, width, i), RTCRayN_dir_y(rays, width, i), RTCRayN_dir_z(rays, width, i));
+    const double t = plane_distance(triangle, o, d);
+    // As floats, for the reason given in trace_analytic().
+    if (!(t > static_cast<double>(RTCRayN_tnear(rays, width, i)) &&
+          static_cast<float>(t) < RTCRayN_tfar(rays, width, i)) ||
+        !is_inside(triangle, o, d, t)) {
+      continue;
+    }
+    const Vec3d p = o + t * d;
+    const Vec2f weights(weights_at(triangle, p));
+    if (user.alpha && user.alpha->cut(prim, weights.x, weights.y, Vec3f(p), shadow)) continue;
+    accept(i, static_cast<float>(t), weights);
+  }
+}
+
+void exact_intersect(const RTCIntersectFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const unsigned width = args->N;
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
+  trace_exact(user, args->primID, rays, args->valid, width, false, [&](unsigned i, float t, const Vec2f& weights) {
+    RTCRayN_tfar(rays, width, i) = t;
+    RTCHitN_u(hits, width, i) = weights.x;
+    RTCHitN_v(hits, width, i) = weights.y;
+    RTCHitN_primID(hits, width, i) = args->primID;
+    RTCHitN_geomID(hits, width, i) = args->geomID;
+    RTCHitN_instID(hits, width, i, 0) = args->context->instID[0];
+  });
+}
+
+void exact_occluded(const RTCOccludedFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  trace_exact(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, float, const Vec2f&) {
     RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
   });
 }
@@ -386,6 +442,19 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
   rtcSetGeometryOccludedFunction(g, curve_occluded);
   impl_->attach(group, g, shape);
   impl_->worth += kWorthOfLarge;
+}
+
+void Accel::add_exact(int group, std::span<const ExactTriangle> triangles, int shape, const AlphaTest* alpha) {
+  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(g, static_cast<unsigned>(triangles.size()));
+  GeometryUser* const user = impl_->new_user(nullptr, alpha);
+  user->triangles = triangles.data();
+  rtcSetGeometryUserData(g, user);
+  rtcSetGeometryBoundsFunction(g, exact_bounds, nullptr);
+  rtcSetGeometryIntersectFunction(g, exact_intersect);
+  rtcSetGeometryOccludedFunction(g, exact_occluded);
+  impl_->attach(group, g, shape);
+  impl_->worth += kWorthOfAnalytic * static_cast<double>(triangles.size());
 }
 
 void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, const AlphaTest* alpha) {

@@ -6,10 +6,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/accel/curve.h"
+#include "core/accel/exact_triangle.h"
 #include "core/base/vec.h"
 #include "core/batch/lanes.h"
 #include "core/plugin/shape.h"
@@ -80,6 +82,8 @@ class Accel {
   /// Starts a new object group; returns its number.
   int add_group();
   void add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha);
+  /// Triangles that are traced in double precision. They must outlive the Accel.
+  void add_exact(int group, std::span<const ExactTriangle> triangles, int shape, const AlphaTest* alpha);
   void add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha);
   void add_analytic(int group, const AnalyticShape& shape_geometry, int shape, const AlphaTest* alpha);
   /// Places a group in the world; keys are group-to-render matrices, evenly spaced over time [0,1] and

@@ -182,18 +182,6 @@ void triangle_normal_derivatives(const TriangleLanes& t, const ShadingBatch& s, 
   });
 }
 
-void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
-                   const GeometricPartials& g, Arena& arena) {
-  ArenaScope scope(arena);
-  const TriangleLanes t = gather_triangles(scene, h, first, s.n, arena);
-  const float *bu = h.u + first, *bv = h.v + first;
-  triangle_geometry(t, s, g, bu, bv);
-  if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
-  if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
-  if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
-  if (s.dndu) triangle_normal_derivatives(t, s, bu, bv);
-}
-
 Vec3f to_float(const Vec3d& v) {
   return Vec3f(static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z));
 }
@@ -223,6 +211,88 @@ Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   if (h.instance[i] < 0) return Mat4d();
   const SceneInstance& instance = scene.instances[static_cast<size_t>(h.instance[i])];
   return interpolate_keys(scene.keys_of(instance), h.time_of(i)).inverse();
+}
+
+/// Whether any of the lanes is on a huge triangle.
+bool any_exact(const Scene& scene, const SurfaceHits& h, int first, int n) {
+  for (int i = first; i < first + n; ++i) {
+    if (!scene.shapes[static_cast<size_t>(h.shape[i])].mesh->exact.empty()) return true;
+  }
+  return false;
+}
+
+/// Partial derivatives from the corners' texture coordinates, as triangle_geometry() has them; false where they span no
+/// area.
+bool exact_partials(const ExactTriangle& t, const TriangleLanes& lanes, int i, Vec3d& dpdu, Vec3d& dpdv) {
+  const double du02 = lanes.u0[i] - lanes.u2[i], du12 = lanes.u1[i] - lanes.u2[i];
+  const double dv02 = lanes.v0[i] - lanes.v2[i], dv12 = lanes.v1[i] - lanes.v2[i];
+  const double det = du02 * dv12 - dv02 * du12;
+  if (det == 0) return false;
+  const Vec3d e02 = t.a - t.c, e12 = t.b - t.c;
+  dpdu = (e02 * dv12 - e12 * dv02) / det, dpdv = (e12 * du02 - e02 * du12) / det;
+  return dpdu.cross(dpdv).length2() > 0;
+}
+
+/// What triangle_geometry() computes, in double precision, for lanes on huge triangles: where the ray meets the plane, for
+/// Embree's weights are as far off as the triangle is large. Corrects these weights, too.
+void exact_geometry(const Scene& scene, const SurfaceHits& h, int first, const TriangleLanes& lanes,
+                    const ShadingBatch& s, const GeometricPartials& g, float* bary_u, float* bary_v) {
+  for (int i = 0; i < s.n; ++i) {
+    const int lane = first + i;
+    const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[lane])].mesh;
+    if (mesh.exact.empty()) continue;
+    const ExactTriangle& t = mesh.exact[h.prim[lane]];
+    Vec3d o(h.o[lane]), d(h.d[lane]);
+    if (h.instance[lane] >= 0) {
+      const Mat4d to_local = render_to_local(scene, h, lane);
+      o = transform_point(to_local, o), d = transform_vector(to_local, d);
+    }
+    const double along = plane_distance(t, o, d);
+    const Vec3d met = o + (std::isfinite(along) ? along : static_cast<double>(h.t[lane])) * d;
+    const Vec3d p = met + t.n * (t.height - t.n.dot(met));
+    const Vec2d b = weights_at(t, p);
+    const auto mix = [&](float x, float y, float z) {
+      return static_cast<float>((1 - b.x - b.y) * static_cast<double>(x) + b.x * static_cast<double>(y) +
+                                b.y * static_cast<double>(z));
+    };
+    bary_u[i] = static_cast<float>(b.x), bary_v[i] = static_cast<float>(b.y);
+    s.u[i] = mix(lanes.u0[i], lanes.u1[i], lanes.u2[i]), s.v[i] = mix(lanes.v0[i], lanes.v1[i], lanes.v2[i]);
+    const Vec3f rounded = to_float(p);
+    // The rounding as it is, as in place_points(), and what the plane may be off beside a neighbour's.
+    const auto error = [&](int c) {
+      const double rounding = std::abs(p[c] - static_cast<double>(rounded[c])) * 1.0001;
+      return static_cast<float>(rounding + std::abs(t.n[c]) * t.error + std::abs(p[c]) * 4.5e-16);
+    };
+    s.p.set(i, rounded);
+    s.p_error.set(i, {error(0), error(1), error(2)});
+    const Vec3f n = to_float(t.n) * (s.flips[i] ? -1.0f : 1.0f);
+    s.ng.set(i, n), s.ns.set(i, n);
+    Vec3d dpdu, dpdv;
+    if (!exact_partials(t, lanes, i, dpdu, dpdv)) {
+      const Frame frame = coordinate_system(to_float(t.n));
+      dpdu = Vec3d(frame.s * lanes.unit[i]), dpdv = Vec3d(frame.t * lanes.unit[i]);
+    }
+    for (const Vec3Lanes* u : {&s.dpdu, &g.dpdu}) u->set(i, to_float(dpdu));
+    for (const Vec3Lanes* v : {&s.dpdv, &g.dpdv}) v->set(i, to_float(dpdv));
+  }
+}
+
+void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s,
+                   const GeometricPartials& g, Arena& arena) {
+  ArenaScope scope(arena);
+  const TriangleLanes t = gather_triangles(scene, h, first, s.n, arena);
+  const float *bu = h.u + first, *bv = h.v + first;
+  triangle_geometry(t, s, g, bu, bv);
+  if (any_exact(scene, h, first, s.n)) {
+    float *exact_u = arena.floats(s.n), *exact_v = arena.floats(s.n);
+    std::copy_n(bu, s.n, exact_u), std::copy_n(bv, s.n, exact_v);
+    exact_geometry(scene, h, first, t, s, g, exact_u, exact_v);
+    bu = exact_u, bv = exact_v;
+  }
+  if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
+  if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
+  if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
+  if (s.dndu) triangle_normal_derivatives(t, s, bu, bv);
 }
 
 /// The unit normal of derivatives that m has transformed. pbrt flips the object's normal and then transforms it, so the

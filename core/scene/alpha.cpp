@@ -18,7 +18,12 @@ class TexturedAlpha final : public AlphaTest {
     thread_local Arena arena;
     ArenaScope scope(arena);
     Vec2f uv(u, v);
-    if (geometry_.mesh) uv = mesh_uv(prim, u, v);
+    if (geometry_.mesh && geometry_.mesh->exact.empty()) uv = mesh_uv(prim, u, v);
+    // Weights as floats are off by more than what is seen of a huge triangle.
+    if (geometry_.mesh && !geometry_.mesh->exact.empty()) {
+      const Vec2d weights = weights_at(geometry_.mesh->exact[prim], Vec3d(p));
+      uv = mesh_uv(prim, weights.x, weights.y);
+    }
     if (geometry_.analytic) {
       const SurfacePoint s =
           geometry_.analytic->surface(transform_point(geometry_.analytic->scene_to_object(), Vec3d(p)));
@@ -38,14 +43,17 @@ class TexturedAlpha final : public AlphaTest {
   static float value(const Tex<float>& tex, const ShadingBatch& point) {
     return tex.is_constant() ? tex.value() : tex(point)[0];
   }
-  Vec2f mesh_uv(uint32_t prim, float u, float v) const {
+  template <class T>
+  Vec2f mesh_uv(uint32_t prim, T u, T v) const {
     const Mesh& mesh = *geometry_.mesh;
     Vec2f a(0, 0), b(1, 0), c(1, 1);
     if (!mesh.uvs.empty()) {
       a = mesh.uv(mesh.indices[3 * prim]), b = mesh.uv(mesh.indices[3 * prim + 1]);
       c = mesh.uv(mesh.indices[3 * prim + 2]);
     }
-    return a * (1 - u - v) + b * u + c * v;
+    const T w = 1 - u - v;
+    const auto mix = [&](T at_a, T at_b, T at_c) { return static_cast<float>(at_a * w + at_b * u + at_c * v); };
+    return {mix(a.x, b.x, c.x), mix(a.y, b.y, c.y)};
   }
 
   SceneShape geometry_;

@@ -1,7 +1,9 @@
 #include "core/scene/bake.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 namespace whit {
 namespace {
@@ -21,6 +23,61 @@ bool has_area(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
   // In double, so that a small triangle's area does not underflow.
   const Vec3d p(mesh.position(a)), q(mesh.position(b)), r(mesh.position(c));
   return (q - p).cross(r - p).length2() > 0;
+}
+
+/// A mesh without triangles yet.
+std::unique_ptr<Mesh> bake_vertices(const MeshData& data, const Mat4d& object_to_group) {
+  auto mesh = std::make_unique<Mesh>();
+  const size_t vertices = data.positions.size() / 3;
+  mesh->positions.reserve(3 * vertices + 1);
+  for (size_t i = 0; i < vertices; ++i) {
+    append(mesh->positions, transform_point(object_to_group, point_of(data.positions, i)));
+  }
+  mesh->positions.push_back(0);
+  if (!data.normals.empty()) {
+    const Mat4d n = normal_matrix(object_to_group);
+    mesh->normals.reserve(data.normals.size());
+    for (size_t i = 0; i < vertices; ++i) {
+      append(mesh->normals,
+             transform_vector(n, {data.normals[3 * i], data.normals[3 * i + 1], data.normals[3 * i + 2]}));
+    }
+  }
+  if (!data.tangents.empty()) {
+    mesh->tangents.reserve(data.tangents.size());
+    for (size_t i = 0; i < vertices; ++i) {
+      append(mesh->tangents, transform_vector(object_to_group, {data.tangents[3 * i], data.tangents[3 * i + 1],
+                                                                data.tangents[3 * i + 2]}));
+    }
+  }
+  mesh->uvs = data.uvs;
+  return mesh;
+}
+
+using Point = std::array<double, 3>;
+using EdgeSet = std::set<std::pair<Point, Point>>;
+
+std::pair<Point, Point> edge_of(const Vec3d& q, const Vec3d& r) {
+  return std::minmax(Point{q.x, q.y, q.z}, Point{r.x, r.y, r.z});
+}
+
+/// The edges of `neighbours` between two points of `data`, in object space.
+EdgeSet shared_edges(const MeshData& data, const MeshData& neighbours) {
+  std::set<Point> points;
+  for (size_t i = 0; i + 2 < data.positions.size(); i += 3) {
+    points.insert({data.positions[i], data.positions[i + 1], data.positions[i + 2]});
+  }
+  std::vector<bool> shared(neighbours.positions.size() / 3);
+  for (size_t i = 0; i < shared.size(); ++i) {
+    const Vec3d p = point_of(neighbours.positions, i);
+    shared[i] = points.count({p.x, p.y, p.z}) > 0;
+  }
+  EdgeSet edges;
+  for (size_t i = 0; i < neighbours.indices.size(); ++i) {
+    const uint32_t q = neighbours.indices[i], r = neighbours.indices[i % 3 == 2 ? i - 2 : i + 1];
+    if (shared[q] && shared[r])
+      edges.insert(edge_of(point_of(neighbours.positions, q), point_of(neighbours.positions, r)));
+  }
+  return edges;
 }
 
 }  // namespace
@@ -63,29 +120,7 @@ Box3d mesh_bounds(const MeshData& data, const Mat4d& m) {
 }
 
 std::unique_ptr<Mesh> bake_mesh(const MeshData& data, const Mat4d& object_to_group, size_t& degenerate) {
-  auto mesh = std::make_unique<Mesh>();
-  const size_t vertices = data.positions.size() / 3;
-  mesh->positions.reserve(3 * vertices + 1);
-  for (size_t i = 0; i < vertices; ++i) {
-    append(mesh->positions, transform_point(object_to_group, point_of(data.positions, i)));
-  }
-  mesh->positions.push_back(0);
-  if (!data.normals.empty()) {
-    const Mat4d n = normal_matrix(object_to_group);
-    mesh->normals.reserve(data.normals.size());
-    for (size_t i = 0; i < vertices; ++i) {
-      append(mesh->normals,
-             transform_vector(n, {data.normals[3 * i], data.normals[3 * i + 1], data.normals[3 * i + 2]}));
-    }
-  }
-  if (!data.tangents.empty()) {
-    mesh->tangents.reserve(data.tangents.size());
-    for (size_t i = 0; i < vertices; ++i) {
-      append(mesh->tangents, transform_vector(object_to_group, {data.tangents[3 * i], data.tangents[3 * i + 1],
-                                                                data.tangents[3 * i + 2]}));
-    }
-  }
-  mesh->uvs = data.uvs;
+  std::unique_ptr<Mesh> mesh = bake_vertices(data, object_to_group);
   degenerate = 0;
   mesh->indices.reserve(data.indices.size());
   for (size_t t = 0; t + 2 < data.indices.size(); t += 3) {
@@ -95,6 +130,32 @@ std::unique_ptr<Mesh> bake_mesh(const MeshData& data, const Mat4d& object_to_gro
       continue;
     }
     mesh->indices.insert(mesh->indices.end(), {a, b, c});
+  }
+  return mesh;
+}
+
+std::unique_ptr<Mesh> bake_huge(const MeshData& data, const MeshData& neighbours, const Mat4d& object_to_group,
+                                size_t& degenerate) {
+  std::unique_ptr<Mesh> mesh = bake_vertices(data, object_to_group);
+  const EdgeSet shared = shared_edges(data, neighbours);
+  degenerate = 0;
+  for (size_t t = 0; t + 2 < data.indices.size(); t += 3) {
+    Vec3d p[3];
+    for (size_t k = 0; k < 3; ++k)
+      p[k] = transform_point(object_to_group, point_of(data.positions, data.indices[t + k]));
+    if (!((p[1] - p[0]).cross(p[2] - p[0]).length2() > 0)) {
+      ++degenerate;
+      continue;
+    }
+    ExactTriangle& triangle = mesh->exact.emplace_back(exact_triangle(p[0], p[1], p[2]));
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t next = (k + 1) % 3;
+      const Vec3d q = point_of(data.positions, data.indices[t + k]),
+                  r = point_of(data.positions, data.indices[t + next]);
+      if (shared.count(edge_of(q, r))) triangle.reach[k] = 0x1p-22 * std::max(p[k].length(), p[next].length());
+    }
+    mesh->indices.insert(mesh->indices.end(), data.indices.begin() + static_cast<std::ptrdiff_t>(t),
+                         data.indices.begin() + static_cast<std::ptrdiff_t>(t) + 3);
   }
   return mesh;
 }

@@ -14,6 +14,7 @@
 #include "core/scene/bake.h"
 #include "core/scene/coincidence.h"
 #include "core/scene/emitter_reach.h"
+#include "core/scene/huge.h"
 #include "core/scene/motion.h"
 #include "core/scene/scene.h"
 
@@ -23,14 +24,14 @@ namespace {
 /// A mesh or curves between reading and baking.
 struct LoadedShape {
   size_t description = 0;  ///< Index into SceneDescription::shapes.
-  MeshData mesh;
+  MeshData mesh, huge;     ///< Two parts of one mesh: core/scene/huge.h.
   CurveData curves;
   Box3d bounds;  ///< In the group's own world coordinates, double.
 };
 
 /// What is left of a loaded shape in its group's space; analytic shapes have neither.
 struct BakedShape {
-  std::unique_ptr<Mesh> mesh;
+  std::unique_ptr<Mesh> mesh, huge;
   std::unique_ptr<Curves> curves;
   size_t degenerate = 0;  ///< Triangles left out.
 };
@@ -39,7 +40,7 @@ struct BakedShape {
 struct Group {
   std::vector<LoadedShape> shapes;
   RenderSpace space;
-  Box3d bounds;
+  Box3d bounds, near;  ///< Of all, and without what is huge: floats are made for that.
   int accel_group = 0;
   bool moving_shape = false;  ///< Holds one shape in object space that moves by its own transform.
 };
@@ -87,6 +88,7 @@ class Builder {
     prepare_sampling();
     const auto start = Clock::now();
     load_groups();
+    part_huge_triangles();
     const auto loaded = Clock::now();
     choose_world_space();
     prepare_materials();
@@ -234,6 +236,88 @@ class Builder {
     }
   }
 
+  std::vector<Vec3d> eyes() const {
+    const TransformPair camera = transform(description().camera_transform);
+    return {camera.start.inverse().translation(), camera.end.inverse().translation()};
+  }
+
+  /// Where each group stands: the first of its places, of which an object may have millions.
+  std::vector<std::vector<Mat4d>> places() const {
+    constexpr size_t kMost = 16;
+    std::vector<std::vector<Mat4d>> places(groups_.size());
+    const auto add = [&](size_t g, const TransformPair& t) {
+      for (const Mat4d& m : {t.start, t.end}) {
+        if (places[g].size() < kMost && m.determinant() != 0) places[g].push_back(m);
+      }
+    };
+    for (size_t g = 0; g < groups_.size(); ++g) {
+      if (groups_[g].moving_shape) add(g, moving_transform(groups_[g]));
+    }
+    for (const auto& instance : description().instances) {
+      const size_t g = static_cast<size_t>(instance.object + 1);
+      if (places[g].size() < kMost) add(g, transform(instance.transform));
+    }
+    return places;
+  }
+
+  /// What is in the world, as far as it is soon told.
+  std::vector<Box3d> things_in_world() const {
+    constexpr size_t kMostInstances = 10000;
+    std::vector<Box3d> things;
+    for (const LoadedShape& shape : groups_[0].shapes) things.push_back(shape.bounds);
+    const auto moving = moving_.find(-1);
+    if (moving != moving_.end()) {
+      for (size_t g : moving->second)
+        things.push_back(transform_box(moving_transform(groups_[g]).start, groups_[g].bounds));
+    }
+    for (size_t i = 0; i < std::min(description().instances.size(), kMostInstances); ++i) {
+      const auto& instance = description().instances[i];
+      things.push_back(
+          transform_box(transform(instance.transform).start, groups_[static_cast<size_t>(instance.object + 1)].bounds));
+    }
+    return things;
+  }
+
+  /// Finds what is huge beside what, and makes huge triangles meshes of their own.
+  void part_huge_triangles() {
+    const std::vector<Box3d> things = things_in_world();
+    CloseUps world;
+    for (const Box3d& thing : things) world.add(thing);
+    for (const Vec3d& eye : eyes()) world.look_from(eye);
+    world.sort();
+    part_huge_triangles(groups_[0], world);
+    const std::vector<std::vector<Mat4d>> all_places = places();
+    for (size_t g = 1; g < groups_.size(); ++g) {
+      CloseUps around;
+      for (const LoadedShape& shape : groups_[g].shapes) around.add(shape.bounds);
+      for (const Mat4d& place : all_places[g]) {
+        if (groups_[g].bounds.isEmpty() || !world.may_make_huge(transform_box(place, groups_[g].bounds))) continue;
+        const Mat4d back = place.inverse();
+        for (const Vec3d& eye : eyes()) around.look_from(transform_point(back, eye));
+        for (const Box3d& thing : things) around.add(transform_box(back, thing));
+      }
+      around.sort();
+      part_huge_triangles(groups_[g], around);
+    }
+  }
+
+  void part_huge_triangles(Group& group, const CloseUps& around) {
+    tbb::parallel_for(size_t{0}, group.shapes.size(), [&](size_t i) {
+      LoadedShape& shape = group.shapes[i];
+      if (shape.mesh.indices.empty()) return;
+      const Mat4d to_world =
+          group.moving_shape ? Mat4d() : transform(description().shapes[shape.description].transform).start;
+      const std::vector<uint32_t> huge = find_huge(shape.mesh, to_world, shape.bounds, around);
+      if (!huge.empty()) shape.huge = take_huge(shape.mesh, huge);
+      if (!huge.empty()) shape.bounds = shape.mesh.indices.empty() ? Box3d() : mesh_bounds(shape.mesh, to_world);
+    });
+    for (const LoadedShape& shape : group.shapes) {
+      const bool is_mesh = !shape.mesh.positions.empty();
+      if (is_mesh || !around.is_dwarfed_by(shape.bounds)) group.near.extendBy(shape.bounds);
+    }
+    if (group.near.isEmpty()) group.near = group.bounds;
+  }
+
   /// Render space stands at the camera; object groups stand at their own centres.
   void choose_world_space() {
     const Mat4d camera_to_world = transform(description().camera_transform).start.inverse();
@@ -243,14 +327,14 @@ class Builder {
       if (box.isEmpty()) return;
       for (const Vec3d& corner : corners_of(box)) radius = std::max(radius, (corner - scene_->space.origin).length());
     };
-    include(groups_[0].bounds);
+    include(groups_[0].near);
     for (size_t g : moving_[-1]) {
       const TransformPair t = moving_transform(groups_[g]);
-      include(transform_box(t.start, groups_[g].bounds));
-      include(transform_box(t.end, groups_[g].bounds));
+      include(transform_box(t.start, groups_[g].near));
+      include(transform_box(t.end, groups_[g].near));
     }
     for (const auto& instance : description().instances) {
-      const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].bounds;
+      const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].near;
       const TransformPair t = transform(instance.transform);
       include(transform_box(t.start, object));
       if (t.animated()) include(transform_box(t.end, object));
@@ -260,8 +344,8 @@ class Builder {
     groups_[0].space = scene_->space;
     for (size_t g = 1; g < groups_.size(); ++g) {
       if (groups_[g].bounds.isEmpty()) continue;
-      groups_[g].space.origin = groups_[g].bounds.center();
-      groups_[g].space.scale = sane_scale(groups_[g].bounds.size().length() / 2);
+      groups_[g].space.origin = groups_[g].near.center();
+      groups_[g].space.scale = sane_scale(groups_[g].near.size().length() / 2);
     }
   }
 
@@ -282,7 +366,12 @@ class Builder {
       if (group.shapes.empty()) continue;
       group.accel_group = &group == &groups_[0] ? Accel::kWorld : scene_->accel->add_group();
       const size_t first = scene_->shapes.size();
-      for (const LoadedShape& loaded : group.shapes) add_shape(group, loaded, std::move(*next++));
+      for (const LoadedShape& loaded : group.shapes) {
+        BakedShape shape = std::move(*next++);
+        std::unique_ptr<Mesh> huge = std::move(shape.huge);
+        if (!huge || !shape.mesh->indices.empty()) add_shape(group, loaded, std::move(shape));
+        if (huge) add_shape(group, loaded, {std::move(huge), nullptr, nullptr, 0});
+      }
       attach_shapes(group, first);
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.
     }
@@ -307,10 +396,14 @@ class Builder {
     if (dynamic_cast<const MeshShape*>(plugin)) {
       baked.mesh = bake_mesh(loaded.mesh, to_group(group, d), baked.degenerate);
       baked.degenerate += loaded.mesh.degenerate;
+      if (size_t lost = 0; !loaded.huge.indices.empty()) {
+        baked.huge = bake_huge(loaded.huge, loaded.mesh, to_group(group, d), lost);
+        baked.degenerate += lost;
+      }
     } else if (dynamic_cast<const CurveShape*>(plugin)) {
       baked.curves = bake_curves(loaded.curves, to_group(group, d));
     }
-    loaded.mesh = {}, loaded.curves = {};
+    loaded.mesh = {}, loaded.huge = {}, loaded.curves = {};
     return baked;
   }
 
@@ -395,7 +488,9 @@ class Builder {
   }
 
   void attach(const Group& group, const SceneShape& shape, int index, const AlphaTest* alpha) {
-    if (shape.mesh) {
+    if (shape.mesh && !shape.mesh->exact.empty()) {
+      scene_->accel->add_exact(group.accel_group, shape.mesh->exact, index, alpha);
+    } else if (shape.mesh) {
       const Mesh& m = *shape.mesh;
       scene_->accel->add_mesh(group.accel_group,
                               {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index,
@@ -567,7 +662,7 @@ class Builder {
 
 size_t Mesh::bytes() const {
   return sizeof(float) * (positions.capacity() + normals.capacity() + tangents.capacity() + uvs.capacity()) +
-         sizeof(uint32_t) * indices.capacity();
+         sizeof(uint32_t) * indices.capacity() + sizeof(ExactTriangle) * exact.capacity();
 }
 
 size_t Scene::triangle_count() const {

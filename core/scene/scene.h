@@ -21,11 +21,18 @@ struct Mesh {
   std::vector<float> normals;   ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
   std::vector<float> tangents;  ///< 3 per vertex or empty.
   std::vector<float> uvs;       ///< 2 per vertex or empty.
+  /// The triangles in double, or empty: those of a mesh of huge ones, which alone are in it (core/scene/huge.h).
+  std::vector<ExactTriangle> exact;
   size_t triangle_count() const { return indices.size() / 3; }
   Vec3f position(uint32_t i) const { return {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]}; }
   Vec3f normal(uint32_t i) const { return {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}; }
   Vec3f tangent(uint32_t i) const { return {tangents[3 * i], tangents[3 * i + 1], tangents[3 * i + 2]}; }
   Vec2f uv(uint32_t i) const { return {uvs[2 * i], uvs[2 * i + 1]}; }
+  Vec3d corner(size_t triangle, size_t k) const {
+    if (exact.empty()) return Vec3d(position(indices[3 * triangle + k]));
+    const ExactTriangle& t = exact[triangle];
+    return k == 0 ? t.a : k == 1 ? t.b : t.c;
+  }
   size_t bytes() const;
 };
 
