@@ -12,6 +12,7 @@
 
 #include "core/plugin/light.h"
 #include "tests/base/temp_folder.h"
+#include "tests/channels.h"
 #include "tests/hard/hard_case.h"
 #include "tests/plugins/make_plugin.h"
 
@@ -244,7 +245,7 @@ Integrals integrate(const Map& map, const Light& light) {
     for (int c = 0; c < columns; ++c) {
       const Vec3f d = direction(0.5 * (low + high), kPi2 * (c + 0.5) / columns);
       sum.density += static_cast<double>(light.pdf({0, 0, 0}, d)) * solid_angle;
-      sum.radiance += Vec3d(radiance(light, d)) * solid_angle;
+      sum.radiance += test::channels(radiance(light, d)) * solid_angle;
     }
   }
   return sum;
@@ -269,7 +270,7 @@ TEST(Hard, EnvironmentDensitiesAndMeans) {
     draw(512, u, v);
     const Samples samples = sample(*light.plugin, u, v);
     Vec3d sum(0.0);
-    for (size_t i = 16; i < u.size(); ++i) sum += Vec3d(samples.weighted[i]) / (512.0 * 512.0);
+    for (size_t i = 16; i < u.size(); ++i) sum += test::channels(samples.weighted[i]) / (512.0 * 512.0);
     for (int c = 0; c < 3; ++c) {
       mean.see(exact.radiance[c] == 0 ? std::abs(sum[c]) : std::abs(sum[c] / exact.radiance[c] - 1), map.name);
     }
@@ -326,7 +327,7 @@ TEST(Hard, EnvironmentMapsWithAlphaOrBadTexels) {
   for (int i = 0; i < 4000; ++i) {
     const Vec3f d = direction(std::acos(1 - 2 * (i + 0.5) / 4000), 2.399963 * i);
     const auto difference = [&](const Light& a, const Light& b) {
-      return static_cast<double>((radiance(a, d) - radiance(b, d)).length()) +
+      return test::channels(radiance(a, d) - radiance(b, d)).length() +
              std::abs(static_cast<double>(a.pdf({0, 0, 0}, d)) - static_cast<double>(b.pdf({0, 0, 0}, d)));
     };
     same.see(difference(*alpha.plugin, *opaque.plugin), "alpha");

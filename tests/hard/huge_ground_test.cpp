@@ -18,7 +18,8 @@ constexpr const char* kFrom[] = {
     "LookAt 300 -1200 700  0 0 .4  0 0 1 Camera \"perspective\" \"float fov\" .15"};
 
 constexpr const char* kCube =
-    "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7] "
+    "Shape \"trianglemesh\" \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 "
+    "7] "
     "\"point P\" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0  -.5 -.5 1  .5 -.5 1  .5 .5 1  -.5 .5 1]";
 constexpr const char* kBall = "Translate 0 0 .5 Shape \"sphere\" \"float radius\" .5";
 
@@ -29,7 +30,8 @@ std::string view(const std::string& from, const std::string& world, const std::s
          from + "\nWorldBegin\n" + light + "Material \"matte\" \"rgb Kd\" [.5 .5 .5]\n" + world + "\nWorldEnd\n";
 }
 
-constexpr const char* kSun = "LightSource \"distant\" \"point from\" [1 0.01 1] \"point to\" [0 0 0] \"rgb L\" [2 2 2]\n";
+constexpr const char* kSun =
+    "LightSource \"distant\" \"point from\" [1 0.01 1] \"point to\" [0 0 0] \"rgb L\" [2 2 2]\n";
 constexpr const char* kLamp = "LightSource \"point\" \"point from\" [3 1.02 4] \"rgb I\" [40 40 40]\n";
 
 std::string thing(const char* shape) {
@@ -38,29 +40,33 @@ std::string thing(const char* shape) {
 
 /// A ground in z = 0 that reaches `e` to each side.
 std::string triangle(double e) {
-  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [{0} {0} 0  {1} {0} 0  0 {1} 0]\n", -e,
-                     e);
+  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point P\" [{0} {0} 0  {1} {0} 0  0 {1} 0]\n",
+                     -e, e);
 }
 /// Two triangles with an edge between them under the things.
 std::string quad(double e) {
-  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{0} {0} 0  {1} {0} 0  {1} {1} "
-                     "0  {0} {1} 0] \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1]\n",
-                     -e, e);
+  return fmt::format(
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{0} {0} 0  {1} {0} 0  {1} {1} "
+      "0  {0} {1} 0] \"normal N\" [0 0 1 0 0 1 0 0 1 0 0 1]\n",
+      -e, e);
 }
 /// Far off its own middle.
 std::string strip(double e) {
-  return fmt::format("Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{0} -7.25 0  7.3 -9 0  5.2 {1} "
-                     "0  {0} {1} 0]\n",
-                     -e, e);
+  return fmt::format(
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{0} -7.25 0  7.3 -9 0  5.2 {1} "
+      "0  {0} {1} 0]\n",
+      -e, e);
 }
 std::string disk(double e) { return fmt::format("Shape \"disk\" \"float radius\" {}\n", e); }
 std::string field(double e) {
-  return fmt::format("AttributeBegin Translate {0} {0} 0 Scale {1} {1} 1 Shape \"heightfield\" \"integer nu\" 3 \"integer "
-                     "nv\" 3 \"float Pz\" [0 0 0 0 0 0 0 0 0] AttributeEnd\n",
-                     -e, 2 * e);
+  return fmt::format(
+      "AttributeBegin Translate {0} {0} 0 Scale {1} {1} 1 Shape \"heightfield\" \"integer nu\" 3 \"integer "
+      "nv\" 3 \"float Pz\" [0 0 0 0 0 0 0 0 0] AttributeEnd\n",
+      -e, 2 * e);
 }
 std::string instanced(double e) {
-  return "ObjectBegin \"ground\"\n" + quad(e) + "ObjectEnd\nAttributeBegin Translate .3 -.2 0 ObjectInstance \"ground\" "
+  return "ObjectBegin \"ground\"\n" + quad(e) +
+         "ObjectEnd\nAttributeBegin Translate .3 -.2 0 ObjectInstance \"ground\" "
          "AttributeEnd\n";
 }
 std::string moving(double e) {
@@ -71,8 +77,8 @@ struct Ground {
   const char* name;
   std::string (*of)(double);
 };
-constexpr Ground kGrounds[] = {{"a triangle", triangle},   {"a quad with normals", quad}, {"two long triangles", strip},
-                               {"a disk", disk},           {"a heightfield", field},      {"an instance", instanced},
+constexpr Ground kGrounds[] = {{"a triangle", triangle}, {"a quad with normals", quad}, {"two long triangles", strip},
+                               {"a disk", disk},         {"a heightfield", field},      {"an instance", instanced},
                                {"a moving quad", moving}};
 
 /// The share of the pixels that differ by more than rounding can tell: 1e-3 of the ground's 0.225.
@@ -103,7 +109,8 @@ TEST(Hard, HugeGround) {
         for (const Ground& ground : kGrounds) {
           for (const double e : {1e4, 1e5, 1e6, 1e7, 1e8}) {
             const double share = share_off(picture(ground.of(e)), right);
-            if (share > 0) printf("%s of %g, %s, %s %.10s: %g\n", ground.name, e, from, shape, light+12, share * 4096);
+            if (share > 0)
+              printf("%s of %g, %s, %s %.10s: %g\n", ground.name, e, from, shape, light + 12, share * 4096);
             off.see(share, fmt::format("{} of {:g}, {}, {}, {}", ground.name, e, from, shape, light));
           }
         }

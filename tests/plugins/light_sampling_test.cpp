@@ -10,6 +10,7 @@
 
 #include "core/plugin/light.h"
 #include "tests/base/temp_folder.h"
+#include "tests/channels.h"
 #include "tests/plugins/make_plugin.h"
 
 namespace whit {
@@ -209,7 +210,7 @@ Integrals integrate(const Light& light, const Vec3f& p, int rows = 560, int colu
     for (int c = 0; c < columns; ++c) {
       const Vec3f d = direction(0.5 * (low + high), 2 * kPi * (c + 0.5) / columns);
       sum.density += static_cast<double>(light.pdf(p, d)) * solid_angle;
-      sum.radiance += Vec3d(escaped(light, p, d)) * solid_angle;
+      sum.radiance += test::channels(escaped(light, p, d)) * solid_angle;
     }
   }
   return sum;
@@ -240,7 +241,8 @@ TEST(Environment, DensityIntegratesToOneAndSamplesToTheRadiance) {
     EXPECT_NEAR(exact.density, 1, 1e-3);  // transforms put jumps of the density inside steps
     const Draws draws = jittered(400);
     Vec3d mean{0, 0, 0};
-    for (const Sample& s : sample(*light.plugin, {scene.p}, draws.u, draws.v)) mean += Vec3d(s.radiance) / 160000.0;
+    for (const Sample& s : sample(*light.plugin, {scene.p}, draws.u, draws.v))
+      mean += test::channels(s.radiance) / 160000.0;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], exact.radiance[c], 1e-3 * exact.radiance[c] + 1e-12) << c;
   }
 }
@@ -425,7 +427,7 @@ TEST(Skybox, OutsideTheSphereOnlyWhatLiesBehindIt) {
   EXPECT_LT(exact.density, 0.7);
   const Draws draws = jittered(400);
   Vec3d mean{0, 0, 0};
-  for (const Sample& s : sample(*l.plugin, {p}, draws.u, draws.v)) mean += Vec3d(s.radiance) / 160000.0;
+  for (const Sample& s : sample(*l.plugin, {p}, draws.u, draws.v)) mean += test::channels(s.radiance) / 160000.0;
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(mean[c], exact.radiance[c], 3e-3 * exact.radiance[c]);
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/channels.h"
 #include "tests/hard/render_text.h"
 
 namespace whit {
@@ -58,7 +59,7 @@ TEST(Interface, BumpsBehindItAreAsThoseOfPbrt) {
     Translate 0 0 1 Shape "sphere" WorldEnd)");
   Vec3d sum(0.0);
   for (int y = 15; y < 45; ++y) {
-    for (int x = 15; x < 45; ++x) sum += Vec3d(r.pixel(x, y));
+    for (int x = 15; x < 45; ++x) sum += channels(r.pixel(x, y));
   }
   const Vec3d expected(0.0446, 0.0450, 0.0477);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / 900 / expected[c], 1, 4e-3) << c;
