@@ -41,20 +41,20 @@ inline Vec2f map_coordinates(const Vec3f& d, float width, float height) {
 
 }  // namespace
 
-LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) : rule_(rule) {
-  build_radiance(std::move(texels), factor, bad_numbers);
+LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) {
+  build_radiance(std::move(texels), factor, rule, bad_numbers);
   build_bands();
   build_cells();
 }
 
-void LatLongMap::build_radiance(Texels texels, const RGB& factor, size_t& bad_numbers) {
+void LatLongMap::build_radiance(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) {
   constexpr float kMost = std::numeric_limits<float>::max();
   bad_numbers = 0;
   for (float& v : texels.values) {
     if (v >= 0 && v <= kMost) continue;
     v = 0, ++bad_numbers;
   }
-  if (rule_ == LatLongRule::Pbrt) texels = resample_to_power_of_two(std::move(texels), WrapMode::Repeat);
+  if (rule == LatLongRule::Pbrt) texels = resample_to_power_of_two(std::move(texels), WrapMode::LatLong);
   width_ = texels.width, height_ = texels.height;
   const size_t pixels = static_cast<size_t>(width_) * static_cast<size_t>(height_);
   if (texels.channels == 1) {
@@ -83,13 +83,9 @@ void LatLongMap::build_bands() {
   }
 }
 
-/// The texel rows a band lies between; at the poles by the rule.
-int LatLongMap::row_above(int band) const {
-  return band > 0 ? band - 1 : (rule_ == LatLongRule::Pbrt ? height_ - 1 : 0);
-}
-int LatLongMap::row_below(int band) const {
-  return band < height_ ? band : (rule_ == LatLongRule::Pbrt ? 0 : height_ - 1);
-}
+/// The texel rows a band lies between. Those at the poles lie between a row and itself: rows do not go around.
+int LatLongMap::row_above(int band) const { return std::max(band - 1, 0); }
+int LatLongMap::row_below(int band) const { return std::min(band, height_ - 1); }
 
 void LatLongMap::build_cells() {
   const auto columns = static_cast<size_t>(width_);

@@ -12,10 +12,11 @@
 
 namespace whit {
 
-/// How a map is read between texels.
+/// What texels a map is read from. (With either, the poles have the value of their row. pbrt-v3 repeats maps along v too,
+/// so that light of the top row comes from the lower pole.)
 enum class LatLongRule : uint8_t {
-  Pbrt,   ///< As pbrt-v3's MIP map: sides enlarged to powers of two, and at the poles the top row meets the bottom row.
-  Exact,  ///< As the file is, and the poles have the value of their row.
+  Pbrt,   ///< As pbrt-v3's MIP map: sides are enlarged to powers of two.
+  Exact,  ///< The file's.
 };
 
 /// A lat-long map: u = phi / 2 pi with phi = atan2(y, x), v = theta / pi with theta from +z; the top row is the zenith.
@@ -41,15 +42,14 @@ class LatLongMap final : public DirectionalRadiance {
 
   void look_up(int n, const float* x, const float* y, const RGBLanes& out) const;
   void find_density(int n, const float* x, const float* y, float* pdf) const;
-  void build_radiance(Texels texels, const RGB& factor, size_t& bad_numbers);
+  void build_radiance(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers);
   void build_bands();
   void build_cells();
-  /// The texel rows a band lies between; at the poles by the rule.
+  /// The texel rows a band lies between.
   int row_above(int band) const;
   int row_below(int band) const;
 
   int width_ = 0, height_ = 0;
-  LatLongRule rule_;
   std::vector<float> radiance_;  ///< RGB, row by row.
   std::vector<Band> bands_;      ///< height + 1: band k lies between the centres of texel rows k - 1 and k.
   GridDistribution cells_;

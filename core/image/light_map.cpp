@@ -8,7 +8,7 @@
 
 namespace whit {
 
-bool LightMap::prepare(const PrepareContext& ctx, const FileName& file) {
+bool LightMap::prepare(const PrepareContext& ctx, const FileName& file, WrapMode wrap) {
   if (file.empty()) return true;
   const Result<ImageInfo> info = probe_image(file.path);
   if (!info.ok()) {
@@ -19,6 +19,7 @@ bool LightMap::prepare(const PrepareContext& ctx, const FileName& file) {
   TextureSpec spec;
   spec.path = file.path;
   spec.flip = false;
+  spec.wrap = wrap;
   image_ = ctx.textures->add(spec, file.where);
   return true;
 }

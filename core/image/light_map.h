@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/batch/lanes.h"
+#include "core/image/texels.h"
 #include "core/plugin/param.h"
 #include "core/plugin/plugin.h"
 
@@ -9,11 +10,11 @@ namespace whit {
 
 class ImageTexture;
 
-/// A picture that a point of light throws or is measured by: neither flipped nor decoded, repeating, bilinear, as in pbrt-v3.
+/// A picture that a point of light throws or is measured by: neither flipped nor decoded, bilinear, as in pbrt-v3.
 class LightMap {
  public:
   /// Reads the header of the file, or does nothing when there is none. Returns false after reporting an error.
-  bool prepare(const PrepareContext& ctx, const FileName& file);
+  bool prepare(const PrepareContext& ctx, const FileName& file, WrapMode wrap);
   explicit operator bool() const { return image_ != nullptr; }
   double aspect() const { return aspect_; }  ///< Width over height of the picture; 1 when there is none.
   /// Colours at n places of the unit square, (0, 0) being the upper left corner; numbers that are negative or not

@@ -29,6 +29,7 @@ inline float ewa_weight(float r2) {
 // Index i of a side of n texels, n a power of two; -1 stands for black.
 template <WrapMode W>
 int wrap_texel(int i, int n) {
+  static_assert(W != WrapMode::LatLong, "is two modes, one along s and one along t");
   if constexpr (W == WrapMode::Repeat) return i & (n - 1);
   if constexpr (W == WrapMode::Clamp) return std::clamp(i, 0, n - 1);
   if constexpr (W == WrapMode::Black) return i >= 0 && i < n ? i : -1;
@@ -172,6 +173,8 @@ struct MipMap::BlockWeights {
 // The filters for C channels and one wrap mode, so that inner loops have neither switch nor call.
 template <int C, WrapMode W>
 class MipMap::Sampler {
+  static constexpr WrapMode kAlongS = wrap_along_s(W), kAlongT = wrap_along_t(W);
+
  public:
   explicit Sampler(const MipMap& map) : map_(map), last_(map.level_count() - 1), finest_(last_) {}
 
@@ -180,10 +183,8 @@ class MipMap::Sampler {
 
   // st near enough to the texture for integer texel indices, at no change of the result: a repeating texture is
   // reduced to [0, 1], exactly; with the others everything 10 000 texture sizes away looks the same.
-  static float reduce(float v) {
-    if constexpr (W == WrapMode::Repeat) return v - std::floor(v);
-    return std::clamp(v, -1e4f, 1e4f);
-  }
+  static float reduce_s(float s) { return reduce<kAlongS>(s); }
+  static float reduce_t(float t) { return reduce<kAlongT>(t); }
 
   static Value<C> no_value() {
     Value<C> v;
@@ -202,8 +203,8 @@ class MipMap::Sampler {
     const float s_floor = std::floor(s), t_floor = std::floor(t);
     const float ds = s - s_floor, dt = t - t_floor;
     const int x0 = static_cast<int>(s_floor), y0 = static_cast<int>(t_floor);
-    const int x[2] = {wrap_texel<W>(x0, l.width), wrap_texel<W>(x0 + 1, l.width)};
-    const int y[2] = {wrap_texel<W>(y0, l.height), wrap_texel<W>(y0 + 1, l.height)};
+    const int x[2] = {wrap_texel<kAlongS>(x0, l.width), wrap_texel<kAlongS>(x0 + 1, l.width)};
+    const int y[2] = {wrap_texel<kAlongT>(y0, l.height), wrap_texel<kAlongT>(y0 + 1, l.height)};
     const float weight[2][2] = {{(1 - ds) * (1 - dt), (1 - ds) * dt}, {ds * (1 - dt), ds * dt}};
     return with_fetch(l, [&](const auto& fetch) {
       Value<C> sum{};
@@ -236,6 +237,12 @@ class MipMap::Sampler {
   }
 
  private:
+  template <WrapMode Along>
+  static float reduce(float v) {
+    if constexpr (Along == WrapMode::Repeat) return v - std::floor(v);
+    return std::clamp(v, -1e4f, 1e4f);
+  }
+
   // A level the pyramid does not have is noted, and the finest that it has taken in its place.
   const Level& use(int level) {
     finest_ = std::min(finest_, level);
@@ -309,7 +316,7 @@ class MipMap::Sampler {
     Vector4 weights{};
     for (int x0 = e.s0; x0 <= e.s1; x0 += kColumns) {
       int column[kColumns];
-      for (int k = 0; k < kColumns; ++k) column[k] = wrap_texel<W>(x0 + k, l.width) * C;
+      for (int k = 0; k < kColumns; ++k) column[k] = wrap_texel<kAlongS>(x0 + k, l.width) * C;
       const Ellipse::Rows range = e.rows_of(x0, kColumns);
       for (int y0 = range.first; y0 <= range.last; y0 += BlockWeights::kRows) {
         const BlockWeights block(e, x0, y0);
@@ -317,7 +324,7 @@ class MipMap::Sampler {
         for (int j = 0; j < rows; ++j) {
           const float* const w = block.weight + j * kColumns;
           weights += Vector4{w[0], w[1], w[2], w[3]};
-          const int row = wrap_texel<W>(y0 + j, l.height);
+          const int row = wrap_texel<kAlongT>(y0 + j, l.height);
           if (W == WrapMode::Black && row < 0) continue;
           const auto* const texels = first + static_cast<size_t>(row) * l.width * C;
           for (int k = 0; k < kColumns; ++k) {
@@ -346,6 +353,7 @@ int MipMap::with_sampler(const F& f) const {
   switch (wrap_) {
     case WrapMode::Repeat: return run(Sampler<C, WrapMode::Repeat>(*this));
     case WrapMode::Black: return run(Sampler<C, WrapMode::Black>(*this));
+    case WrapMode::LatLong: return run(Sampler<C, WrapMode::LatLong>(*this));
     default: return run(Sampler<C, WrapMode::Clamp>(*this));
   }
 }
@@ -374,7 +382,7 @@ void MipMap::ewa_lookups(S& sampler, const LookupPoints& p, const MipFilter& fil
     const int n = std::min(kLanes, p.n - first);
     const LookupPoints part{
         n, p.s + first, p.t + first, p.dsdx + first, p.dtdx + first, p.dsdy + first, p.dtdy + first};
-    for_lanes(n, [&](int i) { s[i] = sampler.reduce(part.s[i]), t[i] = sampler.reduce(part.t[i]); });
+    for_lanes(n, [&](int i) { s[i] = sampler.reduce_s(part.s[i]), t[i] = sampler.reduce_t(part.t[i]); });
     const EwaLanes lanes(*this, part, s, t, anisotropy);
     for (int i = 0; i < n; ++i) {
       const bool good = std::isfinite(part.s[i]) && std::isfinite(part.t[i]);
@@ -391,7 +399,7 @@ int MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const*
         put(out, i, sampler.no_value());
         continue;
       }
-      const float s = sampler.reduce(p.s[i]), t = sampler.reduce(p.t[i]);
+      const float s = sampler.reduce_s(p.s[i]), t = sampler.reduce_t(p.t[i]);
       put(out, i, p.dsdx ? sampler.trilinear(s, t, widest(p, i)) : sampler.bilinear(0, s, t));
     }
   };
@@ -403,7 +411,7 @@ int MipMap::lookup_width(int n, const float* s, const float* t, const float* wid
     for (int i = 0; i < n; ++i)
       put(out, i,
           std::isfinite(s[i]) && std::isfinite(t[i])
-              ? sampler.trilinear(sampler.reduce(s[i]), sampler.reduce(t[i]), width[i])
+              ? sampler.trilinear(sampler.reduce_s(s[i]), sampler.reduce_t(t[i]), width[i])
               : sampler.no_value());
   };
   return channels_ == 1 ? with_sampler<1>(run) : with_sampler<3>(run);

@@ -135,14 +135,14 @@ Texels resample_to_power_of_two(Texels in, WrapMode wrap) {
   const size_t in_row = static_cast<size_t>(in.width) * c, out_row = static_cast<size_t>(out.width) * c;
 
   std::vector<float> wide(out_row * static_cast<size_t>(in.height));
-  const std::vector<Taps> s_taps = resample_taps(in.width, out.width, wrap);
+  const std::vector<Taps> s_taps = resample_taps(in.width, out.width, wrap_along_s(wrap));
   tbb::parallel_for(0, in.height, [&](int t) {
     resample_line(in.values.data() + in_row * t, c, wide.data() + out_row * t, c, c, s_taps);
   });
   in.values = {};
 
   out.values.resize(out_row * static_cast<size_t>(out.height));
-  const std::vector<Taps> t_taps = resample_taps(in.height, out.height, wrap);
+  const std::vector<Taps> t_taps = resample_taps(in.height, out.height, wrap_along_t(wrap));
   tbb::parallel_for(0, out.width, [&](int s) {
     resample_line(wide.data() + static_cast<size_t>(s) * c, out_row, out.values.data() + static_cast<size_t>(s) * c,
                   out_row, c, t_taps);

@@ -11,8 +11,11 @@
 
 namespace whit {
 
-/// What lies outside [0, 1)^2: the texture again, black, or its border texels.
-enum class WrapMode : uint8_t { Repeat, Black, Clamp };
+/// What lies outside [0, 1)^2: the texture again, black, or its border texels; LatLong, for pictures of all directions:
+/// the texture again along s, which goes around, and its border texels along t, which ends at two poles.
+enum class WrapMode : uint8_t { Repeat, Black, Clamp, LatLong };
+constexpr WrapMode wrap_along_s(WrapMode wrap) { return wrap == WrapMode::LatLong ? WrapMode::Repeat : wrap; }
+constexpr WrapMode wrap_along_t(WrapMode wrap) { return wrap == WrapMode::LatLong ? WrapMode::Clamp : wrap; }
 
 /// The linear value of an sRGB-encoded one: v / 12.92 up to 0.04045, else ((v + 0.055) / 1.055)^2.4. IEC 61966-2-1.
 float srgb_decode(float v);

@@ -13,7 +13,9 @@ class GoniometricLight final : public PointSource {
  public:
   FileName mapname;
 
-  bool prepare(const PrepareContext& ctx) override { return map_.prepare(ctx, mapname) && place(ctx, {0, 0, 0}); }
+  bool prepare(const PrepareContext& ctx) override {
+    return map_.prepare(ctx, mapname, WrapMode::LatLong) && place(ctx, {0, 0, 0});
+  }
 
  private:
   void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const override {

@@ -18,7 +18,7 @@ class ProjectionLight final : public PointSource {
   float fov = 45;
 
   bool prepare(const PrepareContext& ctx) override {
-    if (!map_.prepare(ctx, mapname)) return false;
+    if (!map_.prepare(ctx, mapname, WrapMode::Repeat)) return false;
     const double half = std::tan(static_cast<double>(fov) * detail::kPiD / 360), aspect = map_.aspect();
     x_extent_ = static_cast<float>(half * std::max(aspect, 1.0));
     y_extent_ = static_cast<float>(half * std::max(1 / aspect, 1.0));

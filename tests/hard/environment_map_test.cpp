@@ -124,8 +124,8 @@ Vec3f direction(double theta, double phi) {
   return Vec3f(Vec3d(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)));
 }
 
-/// A map's value at a direction by pbrt-v3's rule, in double: bilinear between the texels' centres, everything repeated,
-/// the rows too.
+/// A map's value at a direction, in double: bilinear between the texels' centres. Columns go around, and a pole has the
+/// value of its row.
 Vec3d reference(const Map& map, const Vec3f& d) {
   const double phi = std::atan2(static_cast<double>(d.y), static_cast<double>(d.x));
   const double theta =
@@ -136,7 +136,7 @@ Vec3d reference(const Map& map, const Vec3f& d) {
   for (int k = 0; k < 4; ++k) {
     const double weight = (k & 1 ? x - x0 : 1 - x + x0) * (k & 2 ? y - y0 : 1 - y + y0);
     const int column = (static_cast<int>(x0) + (k & 1) + map.width) % map.width;
-    const int row = (static_cast<int>(y0) + (k >> 1) + map.height) % map.height;
+    const int row = std::clamp(static_cast<int>(y0) + (k >> 1), 0, map.height - 1);
     const RGB c = map.texel(column, row);
     for (int i = 0; i < 3; ++i) {
       const float v = c[map.grey ? 0 : i];
@@ -189,6 +189,27 @@ TEST(Hard, EnvironmentMapsAreReadRight) {
         value.see(std::abs(static_cast<double>(seen[i]) - expected[i]) / largest_texel(map),
                   fmt::format("{} direction {} {} {}", map.name, d.x, d.y, d.z));
       }
+    }
+  }
+}
+
+TEST(Hard, EnvironmentMapsDoNotLeakThroughTheirPoles) {
+  // Everything is dark but the row at one pole: the half of the sphere at the other pole must be exactly so, for maps whose
+  // sides are enlarged too (to 16 rows, each made of four at most; below zero is black).
+  HardCase dark({10, "light of a map's row at a pole from the half sphere of the other one",
+                 "maps of 4 to 12 rows, 64 directions down to 1e-8 from the pole", "radiance", 0, ""});
+  for (const int height : {4, 8, 10, 12}) {
+    for (const bool top : {true, false}) {
+      const Map map{fmt::format("pole-{}-{}", height, top), height, height,
+                    [=](int, int y) { return RGB(y == (top ? 0 : height - 1) ? 1000.0f : 0.0f); }};
+      const Made<Light> light = light_of(map);
+      for (int i = 0; i < 64; ++i) {
+        const double from_pole = 0.75 * std::pow(10, -i / 8.0), theta = top ? kPi2 / 2 - from_pole : from_pole;
+        const Vec3f d = direction(theta, 2.4 * i);
+        dark.see(static_cast<double>(radiance(*light.plugin, d).x),
+                 fmt::format("{} direction {} {} {}", map.name, d.x, d.y, d.z));
+      }
+      EXPECT_GT(radiance(*light.plugin, {0, 0, top ? 1.0f : -1.0f}).x, 900) << map.name;
     }
   }
 }

@@ -58,6 +58,7 @@ struct Reference {
     const Level& l = levels[static_cast<size_t>(level)];
     if (wrap == WrapMode::Repeat) s = ((s % l.w) + l.w) % l.w, t = ((t % l.h) + l.h) % l.h;
     if (wrap == WrapMode::Clamp) s = std::clamp(s, 0, l.w - 1), t = std::clamp(t, 0, l.h - 1);
+    if (wrap == WrapMode::LatLong) s = ((s % l.w) + l.w) % l.w, t = std::clamp(t, 0, l.h - 1);
     if (s < 0 || s >= l.w || t < 0 || t >= l.h) return 0;
     return l.v[static_cast<size_t>(t * l.w + s)];
   }
@@ -150,7 +151,7 @@ std::vector<float> look(const MipMap& map, const LookupPoints& points, const Mip
   return r;
 }
 
-const WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp};
+const WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::LatLong};
 
 TEST(MipMap, pyramid_shape) {
   const MipMap map(picture(8, 2, 3), {});

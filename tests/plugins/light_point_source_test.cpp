@@ -1,7 +1,9 @@
 // spot, goniometric and projection: where they stand, where they shine, and how much.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "core/image/texture_store.h"
 #include "core/image/write.h"
@@ -124,6 +126,24 @@ TEST(Goniometric, ReadsItsMapWithYUp) {
     }
   }
   EXPECT_NEAR(sample(*make_light("goniometric").plugin, {0, 2, 0}).radiance.y, 0.25, 1e-6);
+}
+
+TEST(Goniometric, DoesNotLeakThroughItsPoles) {
+  // Only the top row of the map shines: the lower half is dark, its pole too, also where 3 rows are enlarged to 4.
+  for (const int rows : {4, 3}) {
+    OutputImage picture;
+    std::vector<float> pixels(static_cast<size_t>(12 * rows), 0.0f);
+    std::fill_n(pixels.begin(), 12, 1000.0f);
+    picture.width = 4, picture.height = rows, picture.rgb = pixels;
+    const std::string path = temp_folder() + "/pole" + std::to_string(rows) + ".pfm";
+    ASSERT_TRUE(write_image(path, picture).ok());
+    const auto l = make_light("goniometric", {text("mapname", path)});
+    for (const double degrees : {180.0, 179.9, 170.0, 150.0}) {
+      const Vec3f z = at_angle(degrees);  // from y here
+      EXPECT_EQ(sample(*l.plugin, {z.x, z.z, z.y}).radiance.x, 0) << rows << ' ' << degrees;
+    }
+    EXPECT_GT(sample(*l.plugin, {0, 1, 0}).radiance.x, 900);
+  }
 }
 
 TEST(Projection, ThrowsItsPictureAndNothingBesideIt) {
