@@ -46,6 +46,7 @@ class PngFile {
     info.width = info.full_width = static_cast<int>(header_.width);
     info.height = info.full_height = static_cast<int>(header_.height);
     info.format = wide ? SampleFormat::UInt16 : SampleFormat::UInt8;
+    info.metadata["oiio:ColorSpace"] = "sRGB";  // as OpenImageIO has it, and the format where a file says nothing else
     const auto layout = [&](std::vector<std::string> names, spng_format narrow) {
       info.channels = static_cast<int>(names.size());
       info.channel_names = std::move(names);

@@ -90,6 +90,11 @@ Texels select(const PixelArray<Number>& image, bool single, bool flip, const Val
   return out;
 }
 
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 float byte_value(uint8_t v) { return static_cast<float>(v) / 255; }
 
 }  // namespace
@@ -105,10 +110,18 @@ std::array<float, 256> byte_values(bool gamma) {
   return values;
 }
 
-bool default_gamma(const std::string& path) {
-  std::string e = std::filesystem::path(path).extension().string();
-  for (char& c : e) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return e == ".png" || e == ".tga";
+bool default_gamma(const std::string& path, const ImageInfo& info) {
+  const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+  if (extension == ".png" || extension == ".tga") return true;
+  if (info.format == SampleFormat::Half || info.format == SampleFormat::Float) return false;
+  // Of all names of colour spaces, those with a linear scale have it in their name; the curves of the others (Rec709 of
+  // .ppm files, Adobe RGB, Display P3) are nearer to sRGB's than to none.
+  for (const char* entry : {"ICCProfile:profile_description", "oiio:ColorSpace"}) {
+    const auto said = info.metadata.find(entry);
+    if (said != info.metadata.end() && !said->second.empty())
+      return lower_case(said->second).find("linear") == std::string::npos;
+  }
+  return info.format == SampleFormat::UInt8;
 }
 
 Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip) {

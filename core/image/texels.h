@@ -23,8 +23,10 @@ float srgb_decode(float v);
 /// The values that the bytes 0 to 255 of a picture stand for: 0 to 1, sRGB decoded if `gamma`.
 std::array<float, 256> byte_values(bool gamma);
 
-/// pbrt-v3's default for "gamma": true for .png and .tga (any case), whose values are taken as sRGB.
-bool default_gamma(const std::string& path);
+/// Whether the values of an image texture are sRGB where the scene does not say ("gamma"). True for .png and .tga (any
+/// case), as in pbrt-v3, which reads no other integers; of other files what the file says of itself, else true for 8 bits
+/// and false for more. Numbers in floating point are linear.
+bool default_gamma(const std::string& path, const ImageInfo& info);
 
 /// A grid of texture values, channels innermost.
 struct Texels {

@@ -178,11 +178,12 @@ std::shared_ptr<const MipMap> TextureStore::resident(ImageTexture::Source& sourc
 // pick up a task that wants the same mutex: hence the isolation.
 void TextureStore::decode(ImageTexture::Source& source) {
   const TextureSpec& spec = source.spec;
-  const MipMapOptions options{spec.kind == TextureKind::Float, spec.wrap, spec.gamma, spec.scale, spec.flip};
   try {
     const Result<ImageInfo> info = probe_image(spec.path);
     source.error = info.error;
     if (info.ok()) {
+      const bool gamma = spec.gamma.value_or(default_gamma(spec.path, info.value));
+      const MipMapOptions options{spec.kind == TextureKind::Float, spec.wrap, gamma, spec.scale, spec.flip};
       Workspace workspace(*this, MipMap::bytes_to_build(info.value, options), source);
       const bool bytes = info.value.format == SampleFormat::UInt8;
       tbb::this_task_arena::isolate([&] {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -25,7 +26,7 @@ struct TextureSpec {
   std::string path;
   TextureKind kind = TextureKind::Rgb;  ///< Float takes the luminance, before gamma and scale.
   WrapMode wrap = WrapMode::Repeat;
-  bool gamma = false;  ///< Decode sRGB; see default_gamma(path).
+  std::optional<bool> gamma = false;  ///< Decode sRGB; if it is not said, by default_gamma().
   float scale = 1;
   bool trilinear = false;    ///< Otherwise EWA.
   float max_anisotropy = 8;  ///< EWA only.
@@ -107,7 +108,7 @@ class TextureStore {
 
  private:
   friend class ImageTexture;
-  using SourceKey = std::tuple<std::string, TextureKind, WrapMode, bool, float, bool>;
+  using SourceKey = std::tuple<std::string, TextureKind, WrapMode, std::optional<bool>, float, bool>;
   using TextureKey = std::tuple<SourceKey, bool, float>;
   struct Memory;
   class Workspace;

@@ -33,7 +33,7 @@ class ImageMap : public Texture2D<T> {
     spec.path = filename.path;
     spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;
     spec.wrap = static_cast<WrapMode>(wrap.index);
-    spec.gamma = gamma.value_or(default_gamma(filename.path));
+    spec.gamma = gamma;
     spec.scale = scale;
     spec.trilinear = trilinear;
     spec.max_anisotropy = maxanisotropy;
@@ -67,7 +67,9 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
             choice(&I::wrap, "wrap", {"repeat", "black", "clamp"},
                    "What lies outside the unit square: the picture again, black, or its border."),
             param(&I::gamma, "gamma", Unit::None,
-                  "Decodes sRGB. By default true for png and tga files, false for others."),
+                  "Decodes sRGB. By default true for png and tga files, for others what the file says of itself, else "
+                  "true "
+                  "for 8-bit integers and false for all other numbers."),
             param(&I::scale, "scale", 1.0f, Unit::None, "Multiplies every value, after decoding."),
             param(&I::trilinear, "trilinear", false, Unit::None,
                   "Filters square footprints instead of elliptic ones: faster, but blurred at grazing angles."),

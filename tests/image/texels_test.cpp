@@ -26,9 +26,34 @@ TEST(Texels, srgb_decode) {
   EXPECT_FLOAT_EQ(srgb_decode(0.5f), 0.21404114f);  // ((0.5 + 0.055) / 1.055)^2.4
 }
 
-TEST(Texels, default_gamma_is_for_png_and_tga) {
-  for (const char* yes : {"a.png", "b/c.TGA", "x.Png"}) EXPECT_TRUE(default_gamma(yes)) << yes;
-  for (const char* no : {"a.exr", "png", "a.pfm", "a.png.exr", "a.jpg"}) EXPECT_FALSE(default_gamma(no)) << no;
+TEST(Texels, default_gamma_is_for_png_tga_and_what_else_is_srgb) {
+  const auto of = [](const char* path, SampleFormat format, std::map<std::string, std::string> metadata = {}) {
+    ImageInfo info;
+    info.format = format, info.metadata = std::move(metadata);
+    return default_gamma(path, info);
+  };
+  constexpr SampleFormat k8 = SampleFormat::UInt8, k16 = SampleFormat::UInt16;
+  const std::map<std::string, std::string> srgb{{"oiio:ColorSpace", "sRGB"}}, linear{{"oiio:ColorSpace", "Linear"}};
+  const auto profile = [](const char* name) {
+    return std::map<std::string, std::string>{{"oiio:ColorSpace", "sRGB"}, {"ICCProfile:profile_description", name}};
+  };
+  // pbrt-v3's rule is by the name alone.
+  for (const char* name : {"a.png", "b/c.TGA", "x.Png"}) {
+    for (const SampleFormat format : {k8, k16}) EXPECT_TRUE(of(name, format)) << name;
+    EXPECT_TRUE(of(name, k8, linear)) << name;
+  }
+  for (const char* name : {"a.jpg", "a.tif", "a.bmp", "png", "a.png.gif"}) {
+    EXPECT_TRUE(of(name, k8)) << name;
+    EXPECT_FALSE(of(name, k16)) << name;
+    EXPECT_TRUE(of(name, k16, srgb)) << name;
+    EXPECT_FALSE(of(name, k8, linear)) << name;
+    EXPECT_TRUE(of(name, k16, profile("Adobe RGB (1998)"))) << name;
+    EXPECT_FALSE(of(name, k8, profile("Linear RGB Profile"))) << name;
+  }
+  for (const char* name : {"a.exr", "a.pfm", "a.png.exr", "a.hdr", "a.tif"}) {
+    EXPECT_FALSE(of(name, SampleFormat::Half)) << name;
+    EXPECT_FALSE(of(name, SampleFormat::Float)) << name;
+  }
 }
 
 TEST(Texels, colour_gamma_then_scale_and_flip) {
@@ -118,6 +143,19 @@ TEST(Resample, only_the_odd_side_changes) {
     EXPECT_NEAR(out.values[i], 1, 1e-6);
     EXPECT_NEAR(out.values[4 + i], 5, 1e-5);
   }
+}
+
+TEST(Resample, pictures_of_all_directions_go_around_along_s_alone) {
+  // Columns are enlarged as if they repeated, rows as if they were clamped: of a product of both, the product.
+  const float row[3] = {1, 4, 9}, column[3] = {2, 3, 7};
+  Texels in{3, 3, 1, {}};
+  for (const float t : column) {
+    for (const float s : row) in.values.push_back(s * t);
+  }
+  const Texels out = resample_to_power_of_two(in, WrapMode::LatLong);
+  const Texels along_s = resample_to_power_of_two({3, 1, 1, {1, 4, 9}}, WrapMode::Repeat);
+  const Texels along_t = resample_to_power_of_two({1, 3, 1, {2, 3, 7}}, WrapMode::Clamp);
+  for (size_t i = 0; i < 16; ++i) EXPECT_NEAR(out.values[i], along_s.values[i % 4] * along_t.values[i / 4], 1e-4) << i;
 }
 
 TEST(Resample, overshoot_below_zero_is_clamped) {
