@@ -513,17 +513,20 @@ const Element* only_element(const Header& header, const char* name) {
   return found;
 }
 
-/// True for a mesh of no faces, as programs write it that export whatever is there.
+/// True for a mesh without faces or vertices, as programs write it that export whatever is there, and for point clouds.
 bool is_empty_mesh(const Header& header) {
-  const Element* face = only_element(header, "face");
-  return only_element(header, "vertex") && face && face->count == 0;
+  const auto none = [&](const char* name) {
+    return std::all_of(header.elements.begin(), header.elements.end(),
+                       [&](const Element& e) { return e.name != name || e.count == 0; });
+  };
+  return none("vertex") || none("face");
 }
 
 /// What the header must have for there to be a mesh.
 std::string check_header(const Header& header) {
   const Element *vertex = only_element(header, "vertex"), *face = only_element(header, "face");
-  if (!vertex || vertex->count == 0) return "PLY file has no vertices";
-  if (!face) return "PLY file has no faces";
+  if (!vertex) return "PLY file has several elements \"vertex\"";
+  if (!face) return "PLY file has several elements \"face\"";
   const VertexColumns columns(*vertex);
   if (columns.position[0] < 0 || columns.position[1] < 0 || columns.position[2] < 0) {
     return "PLY vertices lack x, y or z";
@@ -536,17 +539,19 @@ std::string check_header(const Header& header) {
   return p.is_list && is_integer(p.type) ? "" : "PLY \"" + p.name + "\" is not a list of integers";
 }
 
-template <class T>
-bool all_finite(const std::vector<T>& values) {
+/// Makes 0 of what is NaN or infinite; returns how many there were.
+size_t clear_bad_numbers(std::vector<float>& values) {
   // x * 0 is 0 for every finite x and NaN for the others.
-  T sum = 0;
-  for (const T v : values) sum += v * 0;
-  return sum == 0;
+  float sum = 0;
+  for (const float v : values) sum += v * 0;
+  if (sum == 0) return 0;
+  const auto bad = [](float v) { return !std::isfinite(v); };
+  const auto n = std::count_if(values.begin(), values.end(), bad);
+  std::replace_if(values.begin(), values.end(), bad, 0.0f);
+  return static_cast<size_t>(n);
 }
 
 std::string check_mesh(const PlyMesh& mesh) {
-  if (!all_finite(mesh.normals)) return "PLY file has a normal that is not finite";
-  if (!all_finite(mesh.uvs)) return "PLY file has a surface parameter (u, v) that is not finite";
   const size_t vertices = mesh.positions.size() / 3;
   for (size_t i = 0; i < mesh.indices.size(); ++i) {
     if (mesh.indices[i] < vertices) continue;
@@ -573,6 +578,7 @@ std::string parse_ply(std::string_view bytes, PlyMesh& out) {
     const bool swap = (header.format == Format::BigEndian) == (std::endian::native == std::endian::little);
     error = MeshReader(header, bytes, BinaryReader(bytes, swap), out).read();
   }
+  out.bad_numbers = clear_bad_numbers(out.normals) + clear_bad_numbers(out.uvs);
   return error.empty() ? check_mesh(out) : error;
 }
 

@@ -70,7 +70,7 @@ struct PlyMeshShape final : MeshShape {
       return false;
     }
     if (mesh.indices.empty() && mesh.skipped_faces == 0) {
-      ctx.diagnostics->warning(filename.where, fmt::format("{} has no faces", filename.as_given),
+      ctx.diagnostics->warning(filename.where, fmt::format("{} has no faces or no vertices", filename.as_given),
                                "the shape is left out");
     }
     out.owned_positions = std::move(mesh.positions);
@@ -79,6 +79,12 @@ struct PlyMeshShape final : MeshShape {
     out.normals = std::move(mesh.normals);
     out.uvs = std::move(mesh.uvs);
     out.degenerate = remove_degenerate_triangles(out);
+    if (mesh.bad_numbers > 0) {
+      ctx.diagnostics->warning(filename.where,
+                               fmt::format("{} has {} numbers of normals or surface parameters that are not finite",
+                                           filename.as_given, mesh.bad_numbers),
+                               "they count as 0");
+    }
     if (mesh.skipped_faces > 0) {
       ctx.diagnostics->warning(filename.where,
                                fmt::format("{} has {} faces with fewer than 3 or more than 4 corners",

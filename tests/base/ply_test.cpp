@@ -180,8 +180,6 @@ TEST(Ply, BadContentsAreErrors) {
   says(header("ascii", 3, kXyz, 1, "property int i\nend_header\n") + three + "1", "lack \"vertex_indices\"");
   says(header("ascii", 3, kXyz, 1, "property list uchar float vertex_indices\nend_header\n") + three + "3 0 1 2",
        "integers");
-  says("ply\nformat ascii 1.0\nelement vertex 3\n" + std::string(kXyz) + "end_header\n" + three, "no faces");
-  says(header("ascii", 0, kXyz, 1) + "3 0 1 2", "no vertices");
   says(header("utf8", 3, kXyz, 1) + three + "3 0 1 2", "format is unknown");
   says("ply\nformat ascii 1.0\nelement vertex x\n", "count is no number");
   says("ply\nformat ascii 1.0\nproperty float x\n", "before the first element");
@@ -200,6 +198,29 @@ TEST(Ply, AMeshMayBeEmpty) {
     EXPECT_EQ(parse_ply(header("ascii", vertices, kXyz, 0) + "0 0 0", mesh), "");
     EXPECT_TRUE(mesh.indices.empty());
   }
+  // A cloud of points, and faces without vertices.
+  PlyMesh mesh;
+  EXPECT_EQ(parse_ply("ply\nformat ascii 1.0\nelement vertex 1\n" + std::string(kXyz) + "end_header\n0 0 0", mesh), "");
+  EXPECT_TRUE(mesh.indices.empty());
+  EXPECT_EQ(parse_ply(header("ascii", 0, kXyz, 1) + "3 0 1 2", mesh), "");
+  EXPECT_TRUE(mesh.indices.empty());
+}
+
+TEST(Ply, NormalsAndParametersAreFinitePointsAreAsTheFileSays) {
+  // A point that is no number may be there if nothing uses it, so points are passed on. A normal that is none is 0, which
+  // is no direction: the surface's own is taken, as in pbrt-v3.
+  const std::string more =
+      "property float nx\nproperty float ny\nproperty float nz\nproperty float u\nproperty float v\n";
+  PlyMesh mesh;
+  EXPECT_EQ(parse_ply(header("ascii", 3, std::string(kXyz) + more, 1) +
+                          "0 0 nan  nan 0 1  0 0  1 0 0  0 inf 1  1 nan  0 inf 0  0 0 1  1e999 1  3 0 1 2",
+                      mesh),
+            "");
+  EXPECT_TRUE(std::isnan(mesh.positions[2]));
+  EXPECT_TRUE(std::isinf(mesh.positions[7]));
+  EXPECT_EQ(mesh.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(mesh.uvs, (std::vector<float>{0, 0, 1, 0, 0, 1}));
+  EXPECT_EQ(mesh.bad_numbers, 4u);
 }
 
 TEST(Ply, TinyNumbersAreZeroNotErrors) {
@@ -218,7 +239,8 @@ TEST(Ply, GarbageAfterAnyByteNeverCrashes) {
       PlyMesh mesh;
       if (!parse_ply(s, mesh).empty()) continue;
       for (const uint32_t i : mesh.indices) EXPECT_LT(i, mesh.positions.size() / 3);
-      for (const double x : mesh.positions) EXPECT_TRUE(std::isfinite(x));
+      for (const float x : mesh.normals) EXPECT_TRUE(std::isfinite(x));
+      for (const float x : mesh.uvs) EXPECT_TRUE(std::isfinite(x));
     }
   }
 }
