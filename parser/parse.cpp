@@ -108,24 +108,27 @@ class FileReader {
 
 /// True when leaving files unread was, or may have been, a mistake: an object they belong to is placed after all, or
 /// something is wrong that may be right with them.
-bool must_read_all(const ParseResult& result) {
-  return std::any_of(result.scenes.begin(), result.scenes.end(), [&](const SceneDescription& world) {
-    if (world.unread_files.empty()) return false;
-    std::vector<bool> incomplete(world.objects.size());
-    for (const UnreadFile& file : world.unread_files) incomplete[static_cast<size_t>(file.object)] = true;
-    return result.diagnostics.has_errors() ||
-           std::any_of(world.instances.begin(), world.instances.end(),
-                       [&](const auto& instance) { return incomplete[static_cast<size_t>(instance.object)]; });
-  });
+bool must_read_all(const ParseResult& result, bool needs_unread) {
+  return needs_unread || std::any_of(result.scenes.begin(), result.scenes.end(), [&](const SceneDescription& world) {
+           if (world.unread_files.empty()) return false;
+           std::vector<bool> incomplete(world.objects.size());
+           for (const UnreadFile& file : world.unread_files) incomplete[static_cast<size_t>(file.object)] = true;
+           return result.diagnostics.has_errors() ||
+                  std::any_of(world.instances.begin(), world.instances.end(),
+                              [&](const auto& instance) { return incomplete[static_cast<size_t>(instance.object)]; });
+         });
 }
 
-ParseResult parse_once(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options) {
+/// Parses the files. `needs_unread` tells whether something looks wrong that may be right with the files left unread.
+ParseResult parse_once(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options,
+                       bool& needs_unread) {
   ParseResult result;
   Reporter reporter(result.diagnostics);
   if (check_is_scene(sources, file, reporter)) {
     SceneBuilder builder(sources, reporter, absolute(folder));
     result.bytes = FileReader(sources, reporter, folder, options).read(file, builder);
     builder.finish(file);
+    needs_unread = builder.needs_unread();
     result.scenes = builder.take_scenes();
   }
   reporter.finish();
@@ -133,8 +136,10 @@ ParseResult parse_once(Sources& sources, uint32_t file, const std::string& folde
 }
 
 ParseResult parse(Sources& sources, uint32_t file, const std::string& folder, const ParseOptions& options) {
-  ParseResult result = parse_once(sources, file, folder, options);
-  if (must_read_all(result)) result = parse_once(sources, file, folder, {.read_unplaced = true});
+  bool needs_unread = false;
+  ParseResult result = parse_once(sources, file, folder, options, needs_unread);
+  if (must_read_all(result, needs_unread))
+    result = parse_once(sources, file, folder, {.read_unplaced = true}, needs_unread);
   return result;
 }
 

@@ -25,6 +25,12 @@ class Reporter {
     if (admit(where, Severity::Warning)) out_.warning(where, std::move(message), std::move(remedy));
   }
 
+  /// A mistake that pbrt-v3 renders past: a warning, which `whit check` calls an error. `other` is a second place.
+  void excused(SourcePos where, std::string message, std::string remedy = {}, SourcePos other = {}) {
+    if (!admit(where, Severity::Warning)) return;
+    out_.add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), other, true});
+  }
+
   /// How many errors there were so far, those left out included.
   uint64_t errors() const { return errors_; }
 

@@ -28,9 +28,17 @@ std::string suggest(const Reporter& reporter, const std::string& name, const Map
   return did_you_mean(name, names);
 }
 
+/// What a name stands for: the index of a thing, nothing, or a named material that could not be made.
+constexpr int kNoName = -1, kNotMade = -2;
+
+constexpr const char* block_name(int kind) {
+  constexpr const char* kNames[] = {"Attribute", "Transform", "Object"};
+  return kNames[kind];
+}
+
 int look_up(const std::unordered_map<std::string, int>& names, const std::string& name) {
   const auto found = names.find(name);
-  return found == names.end() ? -1 : found->second;
+  return found == names.end() ? kNoName : found->second;
 }
 
 Vec3d three(const Statement& s, size_t first) { return {s.numbers[first], s.numbers[first + 1], s.numbers[first + 2]}; }
@@ -107,15 +115,15 @@ void SceneBuilder::finish(uint32_t main_file) {
 // ---------------------------------------------------------------------------------------------- transforms
 
 void SceneBuilder::change_ctm(const Statement& s, const Mat4d& m, bool concatenate) {
-  TransformPair changed = state_.ctm;
-  if (state_.start_active) changed.start = concatenate ? m * state_.ctm.start : m;
-  if (state_.end_active) changed.end = concatenate ? m * state_.ctm.end : m;
+  TransformPair changed = transforms_.ctm;
+  if (transforms_.start_active) changed.start = concatenate ? m * transforms_.ctm.start : m;
+  if (transforms_.end_active) changed.end = concatenate ? m * transforms_.ctm.end : m;
   if (!is_regular(changed.start) || (changed.animated() && !is_regular(changed.end))) {
     reporter_.error(s.where, std::string(s.row->name) + " makes a matrix that cannot be inverted",
                     "nothing may be scaled to zero or infinity");
     return;
   }
-  state_.ctm = changed;
+  transforms_.ctm = changed;
 }
 
 void SceneBuilder::identity(Statement& s) { change_ctm(s, Mat4d(), false); }
@@ -145,13 +153,13 @@ void SceneBuilder::look_at(Statement& s) {
   }
 }
 
-void SceneBuilder::coordinate_system(Statement& s) { coordinate_systems_[s.names[0]] = state_.ctm; }
+void SceneBuilder::coordinate_system(Statement& s) { coordinate_systems_[s.names[0]] = transforms_.ctm; }
 
 void SceneBuilder::coord_sys_transform(Statement& s) {
   const auto found = coordinate_systems_.find(s.names[0]);
   if (found != coordinate_systems_.end()) {
     // Both times, whatever ActiveTransform says: pbrt does the same.
-    state_.ctm = found->second;
+    transforms_.ctm = found->second;
     return;
   }
   if (object_has_gaps_) return;  // It may be defined there.
@@ -168,8 +176,8 @@ void SceneBuilder::active_transform(Statement& s) {
                     "write All, StartTime or EndTime");
     return;
   }
-  state_.start_active = s.word != "EndTime";
-  state_.end_active = s.word != "StartTime";
+  transforms_.start_active = s.word != "EndTime";
+  transforms_.end_active = s.word != "StartTime";
 }
 
 void SceneBuilder::transform_times(Statement& s) {
@@ -188,9 +196,9 @@ int SceneBuilder::intern(const TransformPair& pair) {
 
 /// The index of the CTM; with `warn_animated` only its start is used, as pbrt does for what cannot move.
 int SceneBuilder::current_transform(const Statement& s, bool warn_animated) {
-  if (!warn_animated || !state_.ctm.animated()) return intern(state_.ctm);
+  if (!warn_animated || !transforms_.ctm.animated()) return intern(transforms_.ctm);
   reporter_.warning(s.where, std::string(s.row->name) + " cannot move", "only the transform at the start time is used");
-  return intern({state_.ctm.start, state_.ctm.start});
+  return intern({transforms_.ctm.start, transforms_.ctm.start});
 }
 
 // ------------------------------------------------------------------------------------------------- options
@@ -208,9 +216,9 @@ void SceneBuilder::sampler(Statement& s) { options_.sampler = entity(s); }
 
 void SceneBuilder::camera(Statement& s) {
   options_.camera = entity(s);
-  camera_transform_ = state_.ctm;
+  camera_transform_ = transforms_.ctm;
   // Gauss-Jordan, because Imath's faster inverse gives up on tiny determinants.
-  coordinate_systems_["camera"] = {state_.ctm.start.gjInverse(), state_.ctm.end.gjInverse()};
+  coordinate_systems_["camera"] = {transforms_.ctm.start.gjInverse(), transforms_.ctm.end.gjInverse()};
 }
 
 /// Makes the string parameter "type" of a MakeNamed... statement its plugin.
@@ -221,9 +229,9 @@ bool SceneBuilder::take_type(Statement& s, Entity& out) {
   };
   const auto found = std::find_if(out.params.begin(), out.params.end(), is_type);
   if (found == out.params.end()) {
-    reporter_.error(s.where,
-                    std::string(s.row->name) + " " + in_quotes(s.names[0]) + " has no parameter \"string type\"",
-                    "\"string type\" says what kind it is");
+    reporter_.excused(s.where,
+                      std::string(s.row->name) + " " + in_quotes(s.names[0]) + " has no parameter \"string type\"",
+                      "\"string type\" says what kind it is; without it nothing is made, as in pbrt-v3");
     return false;
   }
   out.plugin = found->strings().front();
@@ -233,11 +241,33 @@ bool SceneBuilder::take_type(Statement& s, Entity& out) {
 }
 
 void SceneBuilder::make_named_medium(Statement& s) {
-  Entity medium;
-  if (take_type(s, medium)) scene().media.push_back(std::move(medium));
+  MediumDescription medium;
+  medium.name = s.names[0];
+  // Without a type there is no medium, as in pbrt-v3; its name is known, or every use of it would be one more message.
+  if (!take_type(s, medium)) medium.plugin.clear();
+  scene().media.push_back(std::move(medium));
 }
 
-void SceneBuilder::medium_interface(Statement& s) { scene().media_uses.push_back(s.where); }
+void SceneBuilder::medium_interface(Statement& s) {
+  // No name is no medium.
+  for (size_t i = 0; i < s.names.size(); ++i)
+    if (!s.names[i].empty()) scene().media_uses.push_back({s.names[i], s.names_at[i]});
+}
+
+/// Finds the media that MediumInterface names. As pbrt-v3 does, at the end: a medium may be made behind its use.
+void SceneBuilder::resolve_media() {
+  std::unordered_map<std::string, int> media;
+  for (const MediumDescription& medium : scene().media)
+    media[medium.name] = static_cast<int>(&medium - scene().media.data());
+  for (MediumUse& use : scene().media_uses) {
+    use.medium = look_up(media, use.name);
+    if (use.medium >= 0) continue;
+    if (!scene().unread_files.empty()) needs_unread_ = true;
+    const std::string meant = suggest(reporter_, use.name, media);
+    reporter_.excused(use.where, "no medium named " + in_quotes(use.name),
+                      "there is none here, as in pbrt-v3" + (meant.empty() ? "" : "; " + meant));
+  }
+}
 
 void SceneBuilder::include(Statement& s) {
   include_ = IncludeRequest{s.names[0], s.names_at[0], std::move(s.parameters)};
@@ -259,105 +289,164 @@ void SceneBuilder::begin_world(Statement& s) {
   MaterialDescription matte;
   matte.plugin = "matte";
   world.materials.push_back(std::move(matte));
-  state_.ctm = TransformPair();
-  state_.start_active = state_.end_active = true;
-  coordinate_systems_["world"] = state_.ctm;
+  transforms_.ctm = TransformPair();
+  transforms_.start_active = transforms_.end_active = true;
+  coordinate_systems_["world"] = transforms_.ctm;
 }
 
 void SceneBuilder::end_world(Statement&) { close_world("WorldEnd"); }
 
 void SceneBuilder::close_world(const std::string& before) {
-  for (; !blocks_.empty(); leave_top_block()) warn_unclosed(blocks_.back(), before);
+  report_open_blocks(before);
+  resolve_media();
+  transforms_ = TransformState();
   state_ = GraphicsState();
+  saved_transforms_.clear();
+  saved_graphics_.clear();
   definitions_.clear();
   for (Names* names : {&float_textures_, &spectrum_textures_, &named_materials_, &objects_}) names->clear();
   coordinate_systems_.clear();
   current_object_ = warned_area_light_ = -1;
-  in_world_ = false;
+  nested_objects_ = 0;
+  object_has_gaps_ = in_world_ = false;
 }
 
-void SceneBuilder::open_block(BlockKind kind, const Statement& s, bool ignored) {
-  blocks_.push_back({kind, ignored, s.where, state_, definitions_.size()});
-}
+void SceneBuilder::save_transforms(BlockBegin begin) { saved_transforms_.push_back({begin, transforms_}); }
+void SceneBuilder::save_graphics(BlockBegin begin) { saved_graphics_.push_back({begin, state_, definitions_.size()}); }
 
-void SceneBuilder::warn_unclosed(const OpenBlock& block, const std::string& before) {
-  if (object_has_gaps_) return;  // Its end may stand there.
-  constexpr const char* kNames[] = {"Attribute", "Transform", "Object"};
-  const std::string name = kNames[static_cast<int>(block.kind)];
-  reporter_.warning(block.where, name + "Begin is never closed", name + "End is assumed before " + before);
-}
-
-/// Returns to the state before the innermost open block.
-void SceneBuilder::leave_top_block() {
-  OpenBlock& block = blocks_.back();
-  if (block.kind == BlockKind::Transform) {
-    state_.ctm = block.state.ctm;
-    state_.start_active = block.state.start_active;
-    state_.end_active = block.state.end_active;
-  } else {
-    state_ = block.state;
-    for (; definitions_.size() > block.definitions; definitions_.pop_back()) {
-      Definition& undone = definitions_.back();
-      if (undone.before < 0) {
-        undone.names->erase(undone.name);
-      } else {
-        (*undone.names)[undone.name] = undone.before;
-      }
-    }
-  }
-  if (block.kind == BlockKind::Object && !block.ignored) {
-    current_object_ = -1;
-    object_has_gaps_ = false;
-  }
-  blocks_.pop_back();
-}
-
-/// Makes a block the innermost one. The transforms to return to stay where they are: pbrt has a stack of its own for
-/// them, so that a TransformBegin and another block may cross.
-void SceneBuilder::bring_to_top(size_t block) {
-  for (; block + 1 < blocks_.size(); ++block) {
-    OpenBlock &below = blocks_[block], &above = blocks_[block + 1];
-    std::swap(below, above);
-    std::swap(below.state.ctm, above.state.ctm);
-    std::swap(below.state.start_active, above.state.start_active);
-    std::swap(below.state.end_active, above.state.end_active);
-  }
-}
-
-/// Closes the innermost block of a kind. ObjectEnd also closes what is open inside; AttributeEnd leaves an object alone.
-void SceneBuilder::close_block(BlockKind kind, const Statement& s) {
-  const std::string end(s.row->name);
-  const auto found = std::find_if(blocks_.rbegin(), blocks_.rend(), [&](const OpenBlock& block) {
-    const bool fence = kind == BlockKind::Attribute || object_has_gaps_;
-    return block.kind == kind || (fence && block.kind == BlockKind::Object);
-  });
-  if (found == blocks_.rend() || found->kind != kind) {
-    if (object_has_gaps_) return;  // Its begin may stand there.
-    const std::string begin = end.substr(0, end.size() - 3) + "Begin";
-    reporter_.error(
-        s.where, end + " without " + begin,
-        blocks_.empty() ? "" : "the innermost open block began at " + sources_.location(blocks_.back().where));
+void SceneBuilder::return_transforms(BlockKind kind, SourcePos end) {
+  if (saved_transforms_.empty()) {
+    report_unmatched(crossed_transforms_, kind, end);
     return;
   }
-  const auto index = static_cast<size_t>(blocks_.rend() - found) - 1;
-  if (kind == BlockKind::Object) {
-    for (; blocks_.size() > index + 1; leave_top_block()) warn_unclosed(blocks_.back(), end);
-  } else {
-    bring_to_top(index);
-  }
-  leave_top_block();
+  const SavedTransforms& saved = saved_transforms_.back();
+  // Only TransformBegin has no part in the other stack, which sees to what AttributeBegin and ObjectBegin are to each other.
+  if ((kind == BlockKind::Transform) != (saved.begin.kind == BlockKind::Transform))
+    note_crossing(crossed_transforms_, kind, end, saved.begin);
+  transforms_ = saved.state;
+  saved_transforms_.pop_back();
 }
 
-void SceneBuilder::begin_attribute(Statement& s) { open_block(BlockKind::Attribute, s); }
-void SceneBuilder::end_attribute(Statement& s) { close_block(BlockKind::Attribute, s); }
-void SceneBuilder::begin_transform(Statement& s) { open_block(BlockKind::Transform, s); }
-void SceneBuilder::end_transform(Statement& s) { close_block(BlockKind::Transform, s); }
-void SceneBuilder::end_object(Statement& s) { close_block(BlockKind::Object, s); }
+void SceneBuilder::return_graphics(BlockKind kind, SourcePos end) {
+  if (saved_graphics_.empty()) {
+    report_unmatched(crossed_graphics_, kind, end);
+    return;
+  }
+  const SavedGraphics& saved = saved_graphics_.back();
+  if (kind != saved.begin.kind) note_crossing(crossed_graphics_, kind, end, saved.begin);
+  state_ = saved.state;
+  for (; definitions_.size() > saved.definitions; definitions_.pop_back()) {
+    Definition& undone = definitions_.back();
+    if (undone.before == kNoName) {
+      undone.names->erase(undone.name);
+    } else {
+      (*undone.names)[undone.name] = undone.before;
+    }
+  }
+  saved_graphics_.pop_back();
+  return_transforms(kind, end);
+}
+
+bool SceneBuilder::alike(const Crossings& open, BlockKind a, BlockKind b) const {
+  // Of transforms AttributeBegin and ObjectBegin remember the same.
+  constexpr BlockKind transform = BlockKind::Transform;
+  return &open == &crossed_transforms_ ? (a == transform) == (b == transform) : a == b;
+}
+
+/// An end took what another kind of block had saved. That is a warning once the end of that block has come and taken
+/// what was left: the two blocks cross. Until then it may also be that one of the two has no end, or no begin.
+void SceneBuilder::note_crossing(Crossings& open, BlockKind kind, SourcePos end, const BlockBegin& took) {
+  if (object_has_gaps_) needs_unread_ = true;
+  const auto half = std::find_if(open.begin(), open.end(), [&](const Crossing& c) {
+    return alike(open, c.took.kind, kind) && alike(open, c.kind, took.kind);
+  });
+  if (half == open.end()) {
+    open.push_back({kind, end, took});
+    return;
+  }
+  const std::string first = block_name(static_cast<int>(half->kind)),
+                    second = block_name(static_cast<int>(half->took.kind));
+  reporter_.excused(half->where,
+                    first + "End inside the block of " + second + "Begin, which crosses that of " + first + "Begin",
+                    "as in pbrt-v3, the first end closes the block of " + sources_.location(half->took.where) +
+                        ", the second that of " + sources_.location(took.where),
+                    end);
+  open.erase(half);
+}
+
+/// An end with nothing to return to. Where an end of another kind took what this one needs, that one is the mistake.
+void SceneBuilder::report_unmatched(Crossings& open, BlockKind kind, SourcePos end) {
+  if (object_has_gaps_) needs_unread_ = true;
+  Crossing surplus{kind, end, {}};
+  const auto taken =
+      std::find_if(open.begin(), open.end(), [&](const Crossing& c) { return alike(open, c.took.kind, kind); });
+  if (taken != open.end()) {
+    surplus = *taken;
+    open.erase(taken);
+  }
+  SourcePos inside = surplus.took.where;
+  if (!inside.known() && !saved_transforms_.empty()) inside = saved_transforms_.back().begin.where;
+  report_end_without_begin(surplus.kind, surplus.where, inside);
+}
+
+void SceneBuilder::report_end_without_begin(BlockKind kind, SourcePos end, SourcePos innermost) {
+  const std::string name = block_name(static_cast<int>(kind));
+  reporter_.error(end, name + "End without " + name + "Begin",
+                  innermost.known() ? "the innermost open block began at " + sources_.location(innermost) : "");
+}
+
+/// Reports every block that has no end when the world ends.
+void SceneBuilder::report_open_blocks(const std::string& before) {
+  if (object_has_gaps_) needs_unread_ = true;  // Its end may stand there.
+  const auto warn = [&](const BlockBegin& begin, const std::string& remedy) {
+    reporter_.warning(begin.where, std::string(block_name(static_cast<int>(begin.kind))) + "Begin is never closed",
+                      remedy);
+  };
+  const auto assumed = [&](BlockKind kind) {
+    return std::string(block_name(static_cast<int>(kind))) + "End is assumed before " + before;
+  };
+  for (; !saved_graphics_.empty(); saved_graphics_.pop_back()) {
+    const BlockBegin& begin = saved_graphics_.back().begin;
+    // Where an end of this kind took what another block had saved, that other block is the one without an end.
+    const auto other = std::find_if(crossed_graphics_.begin(), crossed_graphics_.end(),
+                                    [&](const Crossing& c) { return c.kind == begin.kind; });
+    if (other == crossed_graphics_.end()) {
+      warn(begin, assumed(begin.kind));
+    } else {
+      warn(other->took, "as in pbrt-v3, it is closed by the " + std::string(block_name(static_cast<int>(other->kind))) +
+                            "End at " + sources_.location(other->where));
+      crossed_graphics_.erase(other);
+    }
+  }
+  for (const Crossing& c : crossed_graphics_) warn(c.took, assumed(c.took.kind));
+  for (; !saved_transforms_.empty(); saved_transforms_.pop_back()) {
+    const BlockBegin& begin = saved_transforms_.back().begin;
+    if (begin.kind == BlockKind::Transform) warn(begin, assumed(begin.kind));
+  }
+  for (const Crossing& c : crossed_transforms_) {
+    if (c.kind == BlockKind::Transform) {
+      report_end_without_begin(c.kind, c.where, c.took.where);
+    } else {
+      warn(c.took, assumed(c.took.kind));
+    }
+  }
+  crossed_graphics_.clear();
+  crossed_transforms_.clear();
+}
+
+void SceneBuilder::begin_attribute(Statement& s) {
+  save_transforms({BlockKind::Attribute, s.where});
+  save_graphics({BlockKind::Attribute, s.where});
+}
+void SceneBuilder::end_attribute(Statement& s) { return_graphics(BlockKind::Attribute, s.where); }
+void SceneBuilder::begin_transform(Statement& s) { save_transforms({BlockKind::Transform, s.where}); }
+void SceneBuilder::end_transform(Statement& s) { return_transforms(BlockKind::Transform, s.where); }
 
 void SceneBuilder::begin_object(Statement& s) {
-  const bool nested = current_object_ >= 0;
-  open_block(BlockKind::Object, s, nested);
-  if (nested) {
+  save_transforms({BlockKind::Object, s.where});
+  save_graphics({BlockKind::Object, s.where});
+  if (current_object_ >= 0) {
+    ++nested_objects_;
     const SourcePos outer = scene().objects[static_cast<size_t>(current_object_)].where;
     reporter_.error(s.where, "ObjectBegin inside an object definition",
                     "the definition around it began at " + sources_.location(outer));
@@ -367,6 +456,21 @@ void SceneBuilder::begin_object(Statement& s) {
   scene().objects.push_back({s.names[0], s.where});
   // Objects are known in the whole world, in whatever block they are defined.
   objects_[s.names[0]] = current_object_;
+}
+
+void SceneBuilder::end_object(Statement& s) {
+  if (current_object_ < 0) {
+    report_end_without_begin(BlockKind::Object, s.where,
+                             saved_transforms_.empty() ? SourcePos() : saved_transforms_.back().begin.where);
+    return;
+  }
+  return_graphics(BlockKind::Object, s.where);
+  if (nested_objects_ > 0) {
+    --nested_objects_;
+    return;
+  }
+  current_object_ = -1;
+  object_has_gaps_ = false;
 }
 
 void SceneBuilder::object_instance(Statement& s) {
@@ -390,7 +494,7 @@ void SceneBuilder::reverse_orientation(Statement&) { state_.reverse_orientation 
 /// Gives a name a meaning until the end of the innermost AttributeBegin or ObjectBegin.
 void SceneBuilder::define(Names& names, const std::string& name, int index) {
   const auto [slot, fresh] = names.try_emplace(name, index);
-  if (!blocks_.empty()) definitions_.push_back({&names, name, fresh ? -1 : slot->second});
+  if (!saved_graphics_.empty()) definitions_.push_back({&names, name, fresh ? kNoName : slot->second});
   slot->second = index;
 }
 
@@ -429,9 +533,17 @@ void SceneBuilder::add_material(Entity made, std::string name) {
   MaterialDescription out;
   static_cast<Entity&>(out) = std::move(made);
   out.name = std::move(name);
-  for (const Parameter& parameter : out.params)
-    for (const std::string& value : parameter.strings())
-      if (const int index = look_up(named_materials_, value); index >= 0) out.named.emplace_back(value, index);
+  for (const Parameter& parameter : out.params) {
+    for (size_t i = 0; i < parameter.strings().size(); ++i) {
+      const std::string& value = parameter.strings()[i];
+      const int index = look_up(named_materials_, value);
+      const bool asked_for = out.plugin == "mix" && parameter.name.starts_with("namedmaterial");
+      // As in pbrt-v3, matte stands in for a material that a mix names and that is not there.
+      if (index >= 0 || asked_for) out.named.emplace_back(value, std::max(index, 0));
+      if (index == kNoName && asked_for)
+        warn_no_material(value, value_position(sources_, parameter, i), "matte stands in for it");
+    }
+  }
   scene().materials.push_back(std::move(out));
 }
 
@@ -443,10 +555,11 @@ void SceneBuilder::material(Statement& s) {
 void SceneBuilder::make_named_material(Statement& s) {
   const std::string name = s.names[0];
   Entity made;
-  const bool good = take_type(s, made);
-  // Without a type the name is defined all the same, or every use of it would be one more error.
-  if (!good) made.plugin = "matte";
-  if (named_materials_.count(name) != 0)
+  if (!take_type(s, made)) {
+    define(named_materials_, name, kNotMade);
+    return;
+  }
+  if (look_up(named_materials_, name) >= 0)
     reporter_.warning(s.names_at[0], "named material " + in_quotes(name) + " is defined again",
                       "the new one is used from here on");
   add_material(std::move(made), name);
@@ -455,12 +568,17 @@ void SceneBuilder::make_named_material(Statement& s) {
 
 void SceneBuilder::named_material(Statement& s) {
   const int index = look_up(named_materials_, s.names[0]);
-  if (index < 0) {
-    reporter_.error(s.names_at[0], "no material named " + in_quotes(s.names[0]),
-                    suggest(reporter_, s.names[0], named_materials_));
-    return;
-  }
-  state_.material = index;
+  if (index >= 0) state_.material = index;
+  // One that could not be made has been reported as such.
+  if (index == kNoName) warn_no_material(s.names[0], s.names_at[0], "the current material stays");
+}
+
+void SceneBuilder::warn_no_material(const std::string& name, SourcePos where, const std::string& instead) {
+  if (!scene().unread_files.empty()) needs_unread_ = true;
+  const std::string meant = suggest(reporter_, name, named_materials_);
+  reporter_.excused(
+      where, "no material named " + in_quotes(name),
+      instead + ", as in pbrt-v3; MakeNamedMaterial must come before" + (meant.empty() ? "" : "; " + meant));
 }
 
 void SceneBuilder::light_source(Statement& s) {

@@ -41,6 +41,9 @@ class SceneBuilder {
   /// Says that an Include in the open object, which is never placed, is not followed.
   void leave_unread(std::string path, SourcePos where);
 
+  /// True when something looks wrong that may be right with what was left unread.
+  bool needs_unread() const { return needs_unread_; }
+
   /// Reports what is missing at the end of the main file.
   void finish(uint32_t main_file);
 
@@ -87,10 +90,14 @@ class SceneBuilder {
   void shape(Statement& s);
 
  private:
-  /// What AttributeBegin saves, but for the names in scope.
-  struct GraphicsState {
+  /// What TransformBegin saves.
+  struct TransformState {
     TransformPair ctm;
     bool start_active = true, end_active = true;
+  };
+
+  /// What AttributeBegin saves beside the transforms, but for the names in scope.
+  struct GraphicsState {
     bool reverse_orientation = false;
     int material = 0;
     int area_light = -1;
@@ -98,14 +105,27 @@ class SceneBuilder {
 
   enum class BlockKind : uint8_t { Attribute, Transform, Object };
 
-  /// An open block: what to return to at its end.
-  struct OpenBlock {
+  struct BlockBegin {
     BlockKind kind;
-    bool ignored;  ///< An ObjectBegin that was an error; kept so that its end finds it.
     SourcePos where;
+  };
+  struct SavedTransforms {
+    BlockBegin begin;
+    TransformState state;
+  };
+  struct SavedGraphics {
+    BlockBegin begin;
     GraphicsState state;
     size_t definitions;  ///< How many of definitions_ there were before.
   };
+
+  /// An end that took what the begin of another kind of block had saved, and what it had to do with.
+  struct Crossing {
+    BlockKind kind;  ///< Of the end.
+    SourcePos where;
+    BlockBegin took;
+  };
+  using Crossings = std::vector<Crossing>;
 
   using Names = std::unordered_map<std::string, int>;
 
@@ -125,12 +145,18 @@ class SceneBuilder {
   bool take_type(Statement& s, Entity& out);
   void resolve_textures(ParameterList& list);
   void add_material(Entity made, std::string name);
+  void warn_no_material(const std::string& name, SourcePos where, const std::string& instead);
   void define(Names& names, const std::string& name, int index);
-  void open_block(BlockKind kind, const Statement& s, bool ignored = false);
-  void bring_to_top(size_t block);
-  void close_block(BlockKind kind, const Statement& s);
-  void warn_unclosed(const OpenBlock& block, const std::string& before);
-  void leave_top_block();
+  void save_transforms(BlockBegin begin);
+  void save_graphics(BlockBegin begin);
+  void return_transforms(BlockKind kind, SourcePos end);
+  void return_graphics(BlockKind kind, SourcePos end);
+  bool alike(const Crossings& open, BlockKind a, BlockKind b) const;
+  void note_crossing(Crossings& open, BlockKind kind, SourcePos end, const BlockBegin& took);
+  void report_unmatched(Crossings& open, BlockKind kind, SourcePos end);
+  void report_end_without_begin(BlockKind kind, SourcePos end, SourcePos innermost);
+  void report_open_blocks(const std::string& before);
+  void resolve_media();
   void close_world(const std::string& before);
   SceneDescription& scene() { return in_world_ ? scenes_.back() : options_; }
 
@@ -143,13 +169,20 @@ class SceneBuilder {
   TransformPair camera_transform_;
   std::vector<SceneDescription> scenes_;
 
+  // Two stacks, as in pbrt-v3: AttributeBegin and ObjectBegin push on both, TransformBegin on the first alone, and an end
+  // takes what lies on top, whichever kind of block put it there.
+  TransformState transforms_;
   GraphicsState state_;
-  std::vector<OpenBlock> blocks_;
+  std::vector<SavedTransforms> saved_transforms_;
+  std::vector<SavedGraphics> saved_graphics_;
+  Crossings crossed_transforms_, crossed_graphics_;  ///< Those whose other half is still to come.
   Names float_textures_, spectrum_textures_, named_materials_, objects_;
   std::vector<Definition> definitions_;
   std::unordered_map<std::string, TransformPair> coordinate_systems_;
   int current_object_ = -1;
+  size_t nested_objects_ = 0;     ///< ObjectBegins in the object that were errors, and have yet to end.
   bool object_has_gaps_ = false;  ///< A file included in it was left unread.
+  bool needs_unread_ = false;     ///< Something looks wrong that may be right with such files.
   int warned_area_light_ = -1;
   std::optional<IncludeRequest> include_;
 };

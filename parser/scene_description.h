@@ -57,8 +57,13 @@ struct TextureDescription : Entity {
 struct MaterialDescription : Entity {
   std::string name;  ///< Of MakeNamedMaterial; "" for Material.
   /// Named materials known at this statement, by parameters of type string that a mix material uses:
-  /// (name, index) of every named material in scope whose name occurs as a string value here.
+  /// (name, index) of every named material in scope whose name occurs as a string value here. 0, the default matte,
+  /// stands in for those that a mix names and that are not there.
   std::vector<std::pair<std::string, int>> named;
+};
+
+struct MediumDescription : Entity {  ///< Without a plugin it has no type, and is no medium.
+  std::string name;
 };
 
 struct LightDescription : Entity {
@@ -93,6 +98,13 @@ struct UnreadFile {
   int object = 0;    ///< Index into objects.
 };
 
+/// A MediumInterface that names a medium.
+struct MediumUse {
+  std::string name;
+  SourcePos where;  ///< The name.
+  int medium = -1;  ///< Index into media; -1 when the world has none of that name.
+};
+
 /// One WorldBegin/End block with the options in force. Options the file does not name have plugin "".
 struct SceneDescription {
   Entity camera, film, filter, sampler, integrator, accelerator;
@@ -108,9 +120,16 @@ struct SceneDescription {
   std::vector<ObjectDescription> objects;
   std::vector<InstanceDescription> instances;
   std::vector<UnreadFile> unread_files;
-  std::vector<Entity> media;          ///< MakeNamedMedium: parsed, not simulated.
-  std::vector<SourcePos> media_uses;  ///< MediumInterface statements.
-  bool has_media() const { return !media.empty() || !media_uses.empty(); }
+  std::vector<MediumDescription> media;  ///< MakeNamedMedium: parsed, not simulated.
+  std::vector<MediumUse> media_uses;
+  /// The statement of the first medium that the scene puts somewhere; nowhere when there is none.
+  SourcePos first_medium() const {
+    for (const MediumUse& use : media_uses)
+      if (use.medium >= 0 && !media[static_cast<size_t>(use.medium)].plugin.empty())
+        return media[static_cast<size_t>(use.medium)].where;
+    return {};
+  }
+  bool has_media() const { return first_medium().known(); }
 
   std::string folder;  ///< Folder of the main file, absolute: relative asset paths resolve against it.
   SourcePos world_begin;

@@ -28,6 +28,8 @@ struct Diagnostic {
   std::string message;  ///< What is wrong, naming the thing: "sphere has no parameter \"raduis\"".
   std::string remedy;   ///< What to do, or what was done instead: "did you mean \"radius\"?"; may be empty.
   SourcePos other{};    ///< A second place that it is about, where there is one.
+  /// A mistake that pbrt-v3 renders past, and so do we with this warning; `whit check` calls it an error.
+  bool excused = false;
 };
 
 /// An ordered collection of diagnostics. Not thread-safe: one per stage, merged by append().
@@ -41,6 +43,10 @@ class Diagnostics {
   }
   void warning(SourcePos where, std::string message, std::string remedy = {}) {
     add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy)});
+  }
+  /// A warning where a picture is made, an error where a file is checked: see Diagnostic::excused.
+  void excused(SourcePos where, std::string message, std::string remedy = {}) {
+    add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), {}, true});
   }
   void add(Diagnostic d) { all_.push_back(std::move(d)); }
   void append(const Diagnostics& other) { all_.insert(all_.end(), other.all_.begin(), other.all_.end()); }

@@ -183,10 +183,7 @@ class Planner {
 
   void note_ignored() {
     const SceneDescription& d = description_;
-    if (d.has_media()) {
-      plan_.ignored.push_back(
-          {"participating media", d.media_uses.empty() ? d.media.front().where : d.media_uses.front()});
-    }
+    if (d.has_media()) plan_.ignored.push_back({"participating media", d.first_medium()});
     if (!d.integrator.plugin.empty() && d.integrator.plugin != "whitted") {
       plan_.ignored.push_back({"integrator \"" + d.integrator.plugin + '"', d.integrator.where});
     }

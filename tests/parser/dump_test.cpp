@@ -58,8 +58,12 @@ std::string dump(const SceneDescription& scene) {
   for (const ObjectDescription& o : scene.objects) out << "object " << o.name << "\n";
   for (const InstanceDescription& i : scene.instances) out << "instance " << i.object << " " << i.transform << "\n";
   for (const UnreadFile& u : scene.unread_files) out << "unread " << u.path << " " << u.object << "\n";
-  for (const Entity& m : scene.media) dump(out, "medium", m);
-  out << scene.media_uses.size() << " " << scene.folder << "\n";
+  for (const MediumDescription& m : scene.media) {
+    dump(out, "medium", m);
+    out << m.name << "\n";
+  }
+  for (const MediumUse& use : scene.media_uses) out << "inside or outside " << use.name << " " << use.medium << "\n";
+  out << scene.folder << "\n";
   return out.str();
 }
 

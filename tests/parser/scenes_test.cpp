@@ -1,4 +1,6 @@
 // What statements mean: options, scopes of names and state, objects, includes.
+#include <cctype>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -148,32 +150,91 @@ TEST(Scenes, Media) {
   expect_clean(parsed);
   EXPECT_EQ(parsed.scene().media.at(0).plugin, "homogeneous");
   EXPECT_EQ(parsed.scene().media_uses.size(), 2u);
+  EXPECT_EQ(parsed.sources.location(parsed.scene().first_medium()), "test.pbrt:1:1");
 }
 
-TEST(Scenes, TransformBlocksMayCrossOthers) {
-  // pbrt-v3 has a stack of transforms and one of the rest: an end takes from them what lies on top.
-  const auto x_of = [](const SceneDescription& scene, size_t shape) {
-    const auto transform = static_cast<size_t>(scene.shapes.at(shape).transform);
-    return transform_point(scene.transforms[transform].start, {0, 0, 0}).x;
-  };
-  const std::string shape = "Shape \"s\"\n";
-  const Parsed transform_first(
-      in_world("Translate 1 0 0 TransformBegin Translate 10 0 0 AttributeBegin Material \"glass\" Translate 100 0 0\n"
-               "TransformEnd " +
-               shape + "AttributeEnd " + shape));
-  expect_clean(transform_first);
-  EXPECT_EQ(x_of(transform_first.scene(), 0), 11);
-  EXPECT_EQ(transform_first.scene().shapes[0].material, 1);
-  EXPECT_EQ(x_of(transform_first.scene(), 1), 1);
-  EXPECT_EQ(transform_first.scene().shapes[1].material, 0);
-  const Parsed attribute_first(
-      in_world("Translate 1 0 0 AttributeBegin Material \"glass\" Translate 10 0 0 TransformBegin Translate 100 0 0\n"
-               "AttributeEnd " +
-               shape + "TransformEnd " + shape));
-  expect_clean(attribute_first);
-  EXPECT_EQ(x_of(attribute_first.scene(), 0), 11);
-  EXPECT_EQ(attribute_first.scene().shapes[0].material, 0);
-  EXPECT_EQ(x_of(attribute_first.scene(), 1), 1);
+TEST(Scenes, MediaThatAreNotThere) {
+  // No name is no medium, and one that is put nowhere changes no picture.
+  const std::string made = "MakeNamedMedium \"a\" \"string type\" \"homogeneous\"\n";
+  for (const std::string& body : {std::string("MediumInterface \"\" \"\""), "MediumInterface \"\"\n" + made}) {
+    const Parsed parsed(in_world(body));
+    expect_clean(parsed);
+    EXPECT_FALSE(parsed.scene().has_media()) << body;
+  }
+  // Made behind its use, and made again: the last one counts.
+  const Parsed late(in_world("MediumInterface \"\" \"a\"\n" + made + made));
+  EXPECT_EQ(late.sources.location(late.scene().first_medium()), "test.pbrt:4:1");
+}
+
+/// Where the shapes of a world are along x, with the names of their materials and "in" for those in an object.
+std::vector<std::string> shapes_of(const SceneDescription& scene) {
+  std::vector<std::string> out;
+  for (const ShapeDescription& shape : scene.shapes) {
+    const Mat4d m = scene.transforms[static_cast<size_t>(shape.transform)].start;
+    out.push_back(std::to_string(static_cast<int>(transform_point(m, {0, 0, 0}).x)) + " " +
+                  scene.materials[static_cast<size_t>(shape.material)].plugin + (shape.object >= 0 ? " in" : ""));
+  }
+  return out;
+}
+
+/// Begins and ends of blocks that cross, with a shape behind each: what pbrt-v3's two stacks make of it. AttributeBegin
+/// and ObjectBegin push graphics state and transform, TransformBegin the transform alone; an end pops what lies on top.
+struct CrossingCase {
+  const char* statements;  ///< A and a, T and t, O and o: begin and end of an attribute, a transform, an object.
+  std::vector<std::string> shapes;
+  int warnings = 1;
+};
+
+class CrossingBlocks : public testing::TestWithParam<CrossingCase> {};
+
+TEST_P(CrossingBlocks, AreReadAsByPbrtWithAWarning) {
+  // Each begin changes both states behind it: the n-th moves by 10^(n-1) and sets the material "mn".
+  std::string body;
+  int n = 0, distance = 1;
+  for (const char* c = GetParam().statements; *c; ++c) {
+    const std::string kind = std::strchr("Aa", *c) ? "Attribute" : std::strchr("Tt", *c) ? "Transform" : "Object";
+    body += kind + (std::isupper(*c) ? "Begin" : "End") + (*c == 'O' ? " \"o\"\n" : "\n");
+    if (std::isupper(*c)) {
+      body += "Translate " + std::to_string(distance) + " 0 0\nMaterial \"m" + std::to_string(++n) + "\"\n";
+      distance *= 10;
+    } else {
+      body += "Shape \"s\"\n";
+    }
+  }
+  const Parsed parsed(in_world(body));
+  EXPECT_EQ(shapes_of(parsed.scene()), GetParam().shapes) << body;
+  EXPECT_EQ(parsed.all().size(), static_cast<size_t>(GetParam().warnings)) << parsed.messages();
+  for (const Diagnostic& d : parsed.all()) {
+    EXPECT_TRUE(d.excused) << parsed.messages();
+    EXPECT_TRUE(d.other.known());
+    EXPECT_NE(d.message.find("crosses"), std::string::npos) << d.message;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CrossingBlocks,
+    testing::Values(
+        // A well-known courtyard: the end of the attribute around the object stands before the object's.
+        CrossingCase{"AOAaao", {"11 m2 in", "1 m1 in", "0 matte"}}, CrossingCase{"AOao", {"1 m1 in", "0 matte"}},
+        CrossingCase{"OAoa", {"1 m1", "0 matte"}}, CrossingCase{"AOAoaa", {"11 m2", "1 m1", "0 matte"}},
+        CrossingCase{"ATat", {"1 matte", "0 matte"}}, CrossingCase{"TAta", {"1 m2", "0 m1"}},
+        CrossingCase{"OTot", {"1 matte", "0 matte"}}, CrossingCase{"TOto", {"1 m2 in", "0 m1"}},
+        // An end before its begin, where another block lends it what it takes.
+        CrossingCase{"AtTa", {"0 m1", "0 matte"}}, CrossingCase{"OaAo", {"0 matte in", "0 matte"}},
+        // Three blocks, and two pairs one behind the other.
+        CrossingCase{"AOTato", {"11 m1 in", "1 m1 in", "0 matte"}, 2},
+        CrossingCase{"AOaoAOao", {"1 m1 in", "0 matte", "100 m3 in", "0 matte"}, 2},
+        // None crosses.
+        CrossingCase{"AOTtoaTAat", {"11 m3 in", "1 m1", "0 matte", "1000 m4", "0 m4"}, 0}));
+
+TEST(Scenes, NamesEndWithTheBlockThatIsPopped) {
+  // The first AttributeEnd goes back to what ObjectBegin remembered, where "inner" was not yet known.
+  const Parsed parsed(in_world(
+      "AttributeBegin MakeNamedMaterial \"outer\" \"string type\" \"glass\" ObjectBegin \"o\"\n"
+      "MakeNamedMaterial \"inner\" \"string type\" \"mirror\" AttributeEnd NamedMaterial \"outer\" Shape \"s\"\n"
+      "NamedMaterial \"inner\" Shape \"s\" ObjectEnd Shape \"s\""));
+  EXPECT_EQ(shapes_of(parsed.scene()), (std::vector<std::string>{"0 glass in", "0 glass in", "0 matte"}));
+  EXPECT_EQ(parsed.all().size(), 2u) << parsed.messages();
 }
 
 TEST(Scenes, AreaLightInsideAnObject) {

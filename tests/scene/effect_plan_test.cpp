@@ -288,7 +288,7 @@ TEST(EffectPlan, WhatIsNotSimulatedIsNamed) {
     return out;
   };
   using Names = std::vector<std::string>;
-  EXPECT_EQ(ignored(scene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"")),
+  EXPECT_EQ(ignored(scene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"")),
             Names{"participating media at test.pbrt:3:1"});
   EXPECT_EQ(ignored(scene("", "Integrator \"path\"\nAccelerator \"kdtree\"\n")),
             Names{"integrator \"path\" at test.pbrt:1:1"});  // the accelerator has no part in the picture

@@ -18,7 +18,7 @@ int check_command(const Arguments& args) {
     Sources sources;
     const ParseOptions everything{.read_unplaced = true};
     const Diagnostics all = all_problems(load_file(sources, path, everything), sources);
-    print_diagnostics(sources, all);
+    print_diagnostics(sources, unexcused(all));
     if (!all.all().empty()) code = kNo;
   }
   return code;

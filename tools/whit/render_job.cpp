@@ -71,7 +71,7 @@ class RenderJob {
     PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
     times_.plan = planned.seconds;
     if (world.has_media()) {
-      diagnostics.warning(world.world_begin, "participating media are not simulated", "the picture is made without");
+      diagnostics.warning(world.first_medium(), "participating media are not simulated", "the picture is made without");
     }
     unread_.clear();
     for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);

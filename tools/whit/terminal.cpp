@@ -77,6 +77,15 @@ Diagnostics strict(const Diagnostics& diagnostics) {
   return out;
 }
 
+Diagnostics unexcused(const Diagnostics& diagnostics) {
+  Diagnostics out;
+  for (Diagnostic d : diagnostics.all()) {
+    if (d.excused) d.severity = Severity::Error;
+    out.add(std::move(d));
+  }
+  return out;
+}
+
 Progress::Progress(std::string what)
     : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
 
