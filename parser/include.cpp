@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "core/base/path_hint.h"
 #include "parser/parameters.h"
 
 namespace whit {
@@ -25,7 +26,7 @@ std::string join_path(const std::string& folder, const std::string& path) {
 namespace {
 
 void report_unopened(Reporter& reporter, SourcePos where, const std::string& full, const std::string& problem) {
-  reporter.file_error(where, "cannot open " + in_quotes(full) + ": " + problem);
+  reporter.file_error(where, "cannot open " + quoted_path(full) + ": " + problem, path_hint(full));
 }
 
 }  // namespace
@@ -50,13 +51,13 @@ std::optional<uint32_t> open_include(Sources& sources, Reporter& reporter, const
     return std::nullopt;
   }
   if (is_open(*file)) {
-    reporter.error(where, "the file " + in_quotes(full) + " includes itself",
+    reporter.error(where, "the file " + quoted_path(full) + " includes itself",
                    where.file == *file ? "" : "it is being read already, as the file that led here");
     return std::nullopt;
   }
   const std::string binary = why_not_text(sources.text(*file));
   if (binary.empty()) return file;
-  reporter.error(where, in_quotes(full) + " is not a scene file: " + binary);
+  reporter.error(where, quoted_path(full) + " is not a scene file: " + binary);
   return std::nullopt;
 }
 

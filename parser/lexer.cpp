@@ -222,7 +222,7 @@ void Lexer::report_bad_number(const char* p) {
   const bool overflow = scan_number(p, end_, value) != nullptr;
   const bool comma = token.text.find(',') != std::string_view::npos;
   reporter_.error(pos(token), in_quotes(token.text) + (overflow ? " is too large for a number" : " is not a number"),
-                  comma ? "numbers are separated by spaces, their digits by a point" : "");
+                  comma ? "numbers are separated by spaces, their digits by a point" : foreign_characters(token.text));
 }
 
 /// Reads the number at p when a comma ends its token, as in "0.5, 0.5", and passes both. Null when that is not so.

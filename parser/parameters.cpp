@@ -148,8 +148,9 @@ bool ParameterReader::declare(const Token& token, Parameter& out) {
   const std::optional<ParamType> type = find_param_type(words.type);
   if (words.name.empty() || words.extra) {
     const std::string example = type || words.type.empty() ? "float radius" : "float " + words.type;
+    const std::string foreign = foreign_characters(inside(token));
     reporter_.error(lexer_.pos(token), "a parameter is declared by a type and a name, not " + in_quotes(inside(token)),
-                    "as in " + in_quotes(example));
+                    "as in " + in_quotes(example) + (foreign.empty() ? "" : "; " + foreign));
     return false;
   }
   if (!type) {
@@ -230,17 +231,23 @@ bool fits(const Token& token, const Parameter& out) {
   return token.kind == TokenKind::String && takes_strings(out.type) && out.numbers().empty();
 }
 
+bool is_truth(const Token& token) { return token.text == "true" || token.text == "false"; }
+
 void ParameterReader::report_misfit(const Token& token, const Parameter& out) {
   const SourcePos where = lexer_.pos(token);
+  const std::string foreign = foreign_characters(token.kind == TokenKind::Word ? token.text : std::string_view());
   const bool first = out.numbers().empty() && out.integers().empty() && out.strings().empty() && out.bools().empty() &&
                      out.textures().empty();
   if (token.kind == TokenKind::Open) {
     reporter_.error(where, "a list inside a list", "values are written without inner brackets");
   } else if (token.kind == TokenKind::Word && takes_numbers(out.type)) {
-    reporter_.error(where, in_quotes(token.text) + " is not a number", title(out) + " takes " + wanted(out.type));
+    reporter_.error(where, in_quotes(token.text) + " is not a number",
+                    title(out) + " takes " + wanted(out.type) + (foreign.empty() ? "" : "; " + foreign));
+  } else if (out.type == ParamType::Bool && is_truth(token) && reporter_.is_foreign("pbrt-v4")) {
+    reporter_.foreign(where, "pbrt-v4", Severity::Error, title(out) + " takes " + wanted(out.type));
   } else if (out.type == ParamType::Bool) {
     reporter_.error(where, title(out) + " takes " + wanted(out.type) + ", not " + in_quotes(token.text),
-                    token.text == "true" || token.text == "false" ? "put it in quotes" : "");
+                    is_truth(token) ? "put it in quotes" : foreign);
   } else if (!first) {
     reporter_.error(where, "numbers and strings in one list", title(out) + " takes " + wanted(out.type));
   } else {
@@ -248,7 +255,7 @@ void ParameterReader::report_misfit(const Token& token, const Parameter& out) {
     const char* kind = token.kind == TokenKind::String   ? "the string "
                        : token.kind == TokenKind::Number ? "the number "
                                                          : "";
-    reporter_.error(where, title(out) + " takes " + wanted(out.type) + ", not " + kind + in_quotes(text));
+    reporter_.error(where, title(out) + " takes " + wanted(out.type) + ", not " + kind + in_quotes(text), foreign);
   }
 }
 

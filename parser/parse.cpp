@@ -150,7 +150,7 @@ ParseResult parse_file(Sources& sources, const std::string& path, const ParseOpt
   std::string problem;
   const std::optional<uint32_t> file = sources.open(path, problem);
   if (!file) {
-    result.diagnostics.file_error({}, "cannot open " + in_quotes(path) + ": " + problem);
+    result.diagnostics.file_error({}, "cannot open " + quoted_path(path) + ": " + problem);
     return result;
   }
   return parse(sources, *file, fs::path(path).parent_path().string(), options);

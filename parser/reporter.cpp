@@ -14,7 +14,20 @@ bool Reporter::admit(SourcePos where, Severity severity) {
   return count <= kMost;
 }
 
+void Reporter::foreign(SourcePos where, const std::string& version, Severity severity, const std::string& what,
+                       const std::string& remedy) {
+  ++problems_;
+  if (severity == Severity::Error) ++errors_;
+  const std::string reads = "whit reads pbrt-v3, and passes over what " + version + " alone has";
+  const auto [said, first] = foreign_.try_emplace(
+      version, Diagnostic{severity, ErrorClass::Scene, where, "this is a " + version + " file: " + what,
+                          remedy.empty() ? reads : remedy + "; " + reads});
+  if (severity == Severity::Error) said->second.severity = severity;
+}
+
 void Reporter::finish() {
+  for (const auto& [version, diagnostic] : foreign_) out_.add(diagnostic);
+  foreign_.clear();
   for (const Tally& tally : files_) {
     if (tally.warnings > kMost)
       out_.warning(tally.first_dropped_warning,

@@ -1,6 +1,7 @@
 // Problems found while parsing, capped per file so that a broken file cannot bury its first mistake.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -31,13 +32,21 @@ class Reporter {
     out_.add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), other, true});
   }
 
+  /// Takes down that the text is of another version of pbrt: finish() says so once, at the first place. `what` is what
+  /// shows it; `remedy` what to write instead, if there is such a thing.
+  void foreign(SourcePos where, const std::string& version, Severity severity, const std::string& what,
+               const std::string& remedy = {});
+  /// True when the text is known to be of that version.
+  bool is_foreign(const std::string& version) const { return foreign_.count(version) != 0; }
+
   /// How many errors there were so far, those left out included.
   uint64_t errors() const { return errors_; }
 
   /// True when there are so many problems that one more is hardly shown and need not be explained.
   bool crowded() const { return problems_ > 2 * kMost; }
 
-  /// Says once for every file how many problems were left out. Call at the end.
+  /// Says once what other version of pbrt the text is of, and for every file how many problems were left out. Call at
+  /// the end.
   void finish();
 
  private:
@@ -50,6 +59,7 @@ class Reporter {
   Diagnostics& out_;
   uint64_t errors_ = 0, problems_ = 0;
   std::vector<Tally> files_;
+  std::map<std::string, Diagnostic> foreign_;
 };
 
 }  // namespace whit

@@ -103,8 +103,12 @@ std::optional<SceneBuilder::IncludeRequest> SceneBuilder::take_include() {
 
 void SceneBuilder::finish(uint32_t main_file) {
   if (in_world_) {
-    reporter_.error(scenes_.back().world_begin, "WorldBegin without WorldEnd: the file ends inside the world block",
-                    "add WorldEnd at the end");
+    const std::string open = "WorldBegin without WorldEnd: the file ends inside the world block";
+    if (reporter_.is_foreign("pbrt-v4")) {
+      reporter_.foreign(scenes_.back().world_begin, "pbrt-v4", Severity::Error, open);  // There is no WorldEnd there.
+    } else {
+      reporter_.error(scenes_.back().world_begin, open, "add WorldEnd at the end");
+    }
     close_world("the end of the file");
   } else if (scenes_.empty() && !world_missing_reported_) {
     reporter_.error({main_file, 0}, "no WorldBegin: there is nothing to render",

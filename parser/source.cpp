@@ -35,12 +35,35 @@ std::string hex_escape(unsigned char byte) {
 
 bool is_control(unsigned char byte) { return byte < 0x20 || byte == 0x7f; }
 
+/// The code point that a valid sequence of UTF-8 encodes.
+uint32_t code_point(std::string_view sequence) {
+  const auto lead = static_cast<unsigned char>(sequence[0]);
+  uint32_t code = sequence.size() == 1 ? lead : lead & (0x7fu >> sequence.size());
+  for (const char c : sequence.substr(1)) code = code << 6 | (static_cast<unsigned char>(c) & 0x3fu);
+  return code;
+}
+
+/// Characters that look like a space or like nothing, and those that turn the direction of what follows.
+bool is_unseen(uint32_t code) {
+  return code == 0xa0 || code == 0xad || code == 0x1680 || (code >= 0x2000 && code <= 0x200f) ||
+         (code >= 0x2028 && code <= 0x202f) || (code >= 0x205f && code <= 0x206f) || code == 0x3000 || code == 0xfeff;
+}
+
+std::string unicode_escape(uint32_t code) {
+  constexpr char kDigits[] = "0123456789abcdef";
+  std::string out = "\\u";
+  for (int shift = 12; shift >= 0; shift -= 4) out += kDigits[code >> shift & 15];
+  return out;
+}
+
 /// One code point at `at` as a terminal can show it; `length` is how many bytes of the text it covers.
 std::string visible(std::string_view text, size_t at, size_t& length) {
   length = utf8_length(text, at);
   const auto byte = static_cast<unsigned char>(text[at]);
   // U+0080 to U+009F are control characters too, and some terminals obey them.
   const bool c1 = length == 2 && byte == 0xc2 && static_cast<unsigned char>(text[at + 1]) < 0xa0;
+  if (length > 1 && !c1 && is_unseen(code_point(text.substr(at, length))))
+    return unicode_escape(code_point(text.substr(at, length)));
   if (length > 0 && !is_control(byte) && !c1) return std::string(text.substr(at, length));
   length = std::max<size_t>(length, 1);
   if (byte == '\t') return "    ";
@@ -218,7 +241,7 @@ std::string Sources::location(SourcePos where) const {
   const File* file = find(where.file);
   if (!file) return {};
   const SourcePlace at = place(where);
-  return file->name + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
+  return printable(file->name) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
 std::string Sources::excerpt(SourcePos where, bool colour) const {
@@ -267,23 +290,77 @@ std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour
   if (colour) out += error ? "\033[1;31m" : "\033[1;35m";
   out += error ? "error:" : "warning:";
   if (colour) out += "\033[0m";
-  out += " " + diagnostic.message + "\n";
+  out.append(" ").append(printable(diagnostic.message)).append("\n");
   if (located) out += excerpt(diagnostic.where, colour);
   if (find(diagnostic.other.file)) out += "  and " + location(diagnostic.other) + "\n";
-  if (!diagnostic.remedy.empty()) out += "  " + diagnostic.remedy + "\n";
+  if (!diagnostic.remedy.empty()) out.append("  ").append(printable(diagnostic.remedy)).append("\n");
+  return out;
+}
+
+std::string printable(std::string_view text) {
+  std::string out;
+  for (size_t at = 0, length = 0; at < text.size(); at += length) {
+    const std::string shown = visible(text, at, length);
+    out.append(text[at] == '\t' ? "\\t" : shown.c_str());
+  }
   return out;
 }
 
 std::string in_quotes(std::string_view text) {
   constexpr size_t kLongest = 60;
+  size_t end = 0, count = 0;
+  for (; end < text.size() && count < kLongest; ++count) end += std::max<size_t>(utf8_length(text, end), 1);
   std::string out = "\"";
-  size_t count = 0;
-  for (size_t at = 0, length = 0; at < text.size(); at += length, ++count) {
-    if (count == kLongest) return out + "...\"";
-    out += text[at] == '\t' ? "\\t" : visible(text, at, length);
-    if (text[at] == '\t') length = 1;
+  out += printable(text.substr(0, end));
+  return out.append(end < text.size() ? "...\"" : "\"");
+}
+
+std::string quoted_path(std::string_view path) {
+  constexpr size_t kLongest = 1000;
+  size_t start = path.size() > kLongest ? path.size() - kLongest : 0;
+  while (start > 0 && start < path.size() && (static_cast<unsigned char>(path[start]) & 0xc0) == 0x80) ++start;
+  std::string out = start > 0 ? "\"..." : "\"";
+  out += printable(path.substr(start));
+  return out.append("\"");
+}
+
+std::string foreign_characters(std::string_view text) {
+  struct Foreign {
+    std::string_view bytes, meant;
+  };
+  constexpr Foreign kForeign[] = {
+      {"\xe2\x80\x9c", "quotes"},
+      {"\xe2\x80\x9d", "quotes"},
+      {"\xe2\x80\x9e", "quotes"},
+      {"\xe2\x80\x9f", "quotes"},
+      {"\xe2\x80\x98", "quotes"},
+      {"\xe2\x80\x99", "quotes"},
+      {"\xe2\x80\x9a", "quotes"},
+      {"\xe2\x80\xb2", "quotes"},
+      {"\xe2\x80\xb3", "quotes"},
+      {"\xc2\xab", "quotes"},
+      {"\xc2\xbb", "quotes"},
+      {"'", "quotes"},
+      {"`", "quotes"},
+      {"\xe2\x88\x92", "minus"},
+      {"\xe2\x80\x93", "minus"},
+      {"\xe2\x80\x94", "minus"},
+  };
+  for (size_t at = 0, length = 0; at < text.size(); at += length) {
+    length = std::max<size_t>(utf8_length(text, at), 1);
+    const std::string_view one = text.substr(at, length);
+    const uint32_t code = utf8_length(text, at) > 1 ? code_point(one) : 0;
+    if (code == 0xa0) return "it holds a no-break space, U+00A0: write a plain one";
+    if (is_unseen(code))
+      return "it holds " + unicode_escape(code) + ", which cannot be seen: leave it out, or write a space";
+    for (const Foreign& foreign : kForeign) {
+      if (foreign.bytes != one) continue;
+      const bool quotes = foreign.meant == "quotes";
+      return std::string(one) + (quotes ? " is no quote here: write \" around names" : " is no sign here: write -");
+    }
   }
-  return out + "\"";
+  if (text.starts_with("//") || text.starts_with("/*")) return "comments begin with #";
+  return {};
 }
 
 std::string why_not_text(std::string_view text) {

@@ -67,6 +67,16 @@ class Sources {
 /// Text for a message: in double quotes, unprintable bytes escaped, cut after 60 characters.
 std::string in_quotes(std::string_view text);
 
+/// The same for the path of a file, of which a thousand characters are shown, the last ones.
+std::string quoted_path(std::string_view path);
+
+/// Text that may go to a terminal: control characters and characters that cannot be seen are escaped.
+std::string printable(std::string_view text);
+
+/// A remedy for text in the grammar that looks right and is not: no-break spaces, typographic and single quotes, signs
+/// that are dashes, comments of other languages. "" when there is none in it.
+std::string foreign_characters(std::string_view text);
+
 /// Why `text` cannot be a scene file ("it holds binary data", "it is compressed"), or "" when it may be one.
 std::string why_not_text(std::string_view text);
 

@@ -112,15 +112,57 @@ constexpr StatementRow kStatements[] = {
 // clang-format on
 
 /// Directives of other versions of pbrt, and what to write instead.
-constexpr std::pair<std::string_view, std::string_view> kForeign[] = {
-    {"SurfaceIntegrator", "this is pbrt-v2: in pbrt-v3 it is Integrator"},
-    {"VolumeIntegrator", "this is pbrt-v2: in pbrt-v3 an Integrator does volumes too"},
-    {"Renderer", "this is pbrt-v2: in pbrt-v3 it is Integrator"},
-    {"Volume", "this is pbrt-v2: in pbrt-v3 it is MakeNamedMedium"},
-    {"Option", "this is pbrt-v4; pbrt-v3 has no such statement"},
-    {"ColorSpace", "this is pbrt-v4; pbrt-v3 has no such statement"},
-    {"Attribute", "this is pbrt-v4; in pbrt-v3 parameters stand at each statement"},
+struct ForeignDirective {
+  std::string_view name, version, remedy;
 };
+constexpr ForeignDirective kForeignDirectives[] = {
+    {"SurfaceIntegrator", "pbrt-v2", "in pbrt-v3 it is Integrator"},
+    {"VolumeIntegrator", "pbrt-v2", "in pbrt-v3 an Integrator does volumes too"},
+    {"Renderer", "pbrt-v2", "in pbrt-v3 it is Integrator"},
+    {"Volume", "pbrt-v2", "in pbrt-v3 it is MakeNamedMedium"},
+    {"Option", "pbrt-v4", ""},
+    {"ColorSpace", "pbrt-v4", ""},
+    {"Import", "pbrt-v4", "in pbrt-v3 it is Include"},
+    {"Attribute", "pbrt-v4", "in pbrt-v3 parameters stand at each statement"},
+};
+
+/// Plugins that pbrt-v4 alone has, by the statements that name them.
+struct ForeignPlugins {
+  std::string_view directive;
+  std::array<std::string_view, 9> names;
+};
+constexpr ForeignPlugins kForeignPlugins[] = {
+    {"Film", {"rgb", "gbuffer", "spectral"}},
+    {"Camera", {"spherical"}},
+    {"Sampler", {"zsobol", "paddedsobol", "independent", "pmj02bn"}},
+    {"Integrator", {"simplepath", "simplevolpath", "lightpath", "randomwalk", "function"}},
+    {"Material",
+     {"diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
+      "interface", "measured"}},
+    {"MakeNamedMedium", {"uniformgrid", "rgbgrid", "cloud", "nanovdb"}},
+    {"Shape", {"bilinearmesh"}},
+};
+
+/// The plugin that a statement asks for.
+std::string plugin_of(const Statement& s) {
+  if (!s.row->name.starts_with("MakeNamed")) return s.names.back();
+  for (const Parameter& p : s.parameters)
+    if (p.name == "type" && !p.strings().empty()) return p.strings().front();
+  return {};
+}
+
+/// Takes down a plugin that shows the file to be one of pbrt-v4. It is no error: something stands in for it, or not.
+void note_foreign_plugin(const Statement& s, Reporter& reporter) {
+  if (!s.row->arguments.parameters || s.names.empty()) return;
+  const std::string_view directive = s.row->name == "MakeNamedMaterial" ? "Material" : s.row->name;
+  for (const ForeignPlugins& foreign : kForeignPlugins) {
+    if (foreign.directive != directive) continue;
+    const std::string plugin = plugin_of(s);
+    if (!plugin.empty() && std::find(foreign.names.begin(), foreign.names.end(), plugin) != foreign.names.end())
+      reporter.foreign(s.where, "pbrt-v4", Severity::Warning,
+                       "pbrt-v3 has no " + std::string(directive) + " " + in_quotes(plugin));
+  }
+}
 
 std::string lower(std::string_view text) {
   std::string out(text);
@@ -152,13 +194,14 @@ bool looks_like_directive(std::string_view word) {
 bool starts_statement(std::string_view word) {
   // Most lines passed over are numbers: those are told apart first, and cheaply.
   const bool letter = !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || (word[0] >= 'a' && word[0] <= 'z'));
+  if (word.starts_with("//")) return true;  // Meant as a comment, which it is not.
   if (!letter || word.size() > 20) return false;
   return is_directive(word) || looks_like_directive(word) || !find_ignoring_case(word).empty();
 }
 
 std::string unknown_directive_remedy(std::string_view word) {
-  for (const auto& [foreign, remedy] : kForeign)
-    if (foreign == word) return std::string(remedy);
+  const std::string foreign = foreign_characters(word);
+  if (!foreign.empty()) return foreign;
   const std::string_view other_case = find_ignoring_case(word);
   if (!other_case.empty()) return "directives are case sensitive: write " + std::string(other_case);
   std::vector<std::string> known;
@@ -167,14 +210,24 @@ std::string unknown_directive_remedy(std::string_view word) {
   return nearest.empty() ? std::string() : "did you mean " + nearest + "?";
 }
 
+void report_unknown_directive(Reporter& reporter, SourcePos where, std::string_view word) {
+  for (const ForeignDirective& foreign : kForeignDirectives) {
+    if (foreign.name != word) continue;
+    reporter.foreign(where, std::string(foreign.version), Severity::Error,
+                     "pbrt-v3 has no statement " + std::string(word), std::string(foreign.remedy));
+    return;
+  }
+  // The same words at every such line, so that they are shown a few times only.
+  const bool comment = word.starts_with("//");
+  reporter.error(where, comment ? "unknown directive \"//\"" : "unknown directive " + in_quotes(word),
+                 reporter.crowded() ? "" : unknown_directive_remedy(word));
+}
+
 void report_no_directive(Lexer& lexer, const Token& token) {
   Reporter& reporter = lexer.reporter();
   const SourcePos where = lexer.pos(token);
   switch (token.kind) {
-    case TokenKind::Word:
-      reporter.error(where, "unknown directive " + in_quotes(token.text),
-                     lexer.reporter().crowded() ? "" : unknown_directive_remedy(token.text));
-      break;
+    case TokenKind::Word: report_unknown_directive(reporter, where, token.text); break;
     case TokenKind::Open:
     case TokenKind::Close: reporter.error(where, "unexpected " + std::string(token.text)); break;
     case TokenKind::Number:
@@ -203,7 +256,8 @@ bool read_names(Lexer& lexer, Statement& out) {
   const bool one = wanted.min_strings == 1;
   lexer.reporter().error(out.where,
                          std::string(out.row->name) + " needs " +
-                             (one ? "a name in quotes" : plural(wanted.min_strings, "string") + " in quotes"));
+                             (one ? "a name in quotes" : plural(wanted.min_strings, "string") + " in quotes"),
+                         foreign_characters(lexer.peek().text));
   return false;
 }
 
@@ -217,6 +271,13 @@ bool read_word(Lexer& lexer, Statement& out) {
   return false;
 }
 
+/// True for a directive, and for a word at the start of a line that looks like one: it is reported when it is read.
+bool begins_statement(Lexer& lexer, const Token& token) {
+  if (is_directive(token.text)) return true;
+  const std::string_view between = lexer.text().substr(lexer.consumed(), token.offset - lexer.consumed());
+  return between.find('\n') != std::string_view::npos && starts_statement(token.text);
+}
+
 bool read_fixed_numbers(Lexer& lexer, Statement& out) {
   const size_t wanted = out.row->arguments.numbers;
   const bool bracketed = lexer.peek().kind == TokenKind::Open;
@@ -227,9 +288,13 @@ bool read_fixed_numbers(Lexer& lexer, Statement& out) {
   const Token token = lexer.peek();
   if (token.kind == TokenKind::Bad) return false;
   const bool more = token.kind == TokenKind::Number;
+  // Without brackets the statement ends with its last number, whatever follows.
+  if (count == wanted && !bracketed && !more) return true;
   const std::string need = std::string(out.row->name) + " needs " + plural(wanted, "number");
-  if (token.kind == TokenKind::Word && !is_directive(token.text)) {
-    lexer.reporter().error(lexer.pos(token), in_quotes(token.text) + " is not a number", need);
+  if (token.kind == TokenKind::Word && !begins_statement(lexer, token)) {
+    const std::string foreign = foreign_characters(token.text);
+    lexer.reporter().error(lexer.pos(token), in_quotes(token.text) + " is not a number",
+                           need + (foreign.empty() ? "" : "; " + foreign));
   } else if (count < wanted || more) {
     lexer.reporter().error(out.where, need + ", but there are " + (more ? "more" : std::to_string(count)));
   } else if (bracketed && token.kind != TokenKind::Close) {
@@ -274,6 +339,7 @@ ReadResult read_statement(Lexer& lexer, Statement& out) {
   if (token.kind == TokenKind::Word) out.row = find_statement(token.text);
   if (!out.row) report_no_directive(lexer, token);
   const bool good = out.row && read_arguments(lexer, out);
+  if (good) note_foreign_plugin(out, lexer.reporter());
   if (!good) lexer.resynchronise(starts_statement);
   out.end = lexer.consumed();
   return good ? ReadResult::Good : ReadResult::Broken;

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "core/base/path_hint.h"
 #include "core/base/spectrum.h"
 
 namespace whit {
@@ -123,7 +124,9 @@ bool check_readable(const Parameter& p, const BindContext& ctx, const std::strin
   if (std::filesystem::is_directory(path, ignored)) reason = "is a folder";
   else if (errno = 0; !std::ifstream(path, std::ios::binary)) reason = std::strerror(errno);
   if (reason.empty()) return true;
-  ctx.diagnostics->file_error(ctx.at(p), "cannot open " + as_given, path + ": " + reason);
+  const std::string hint = path_hint(as_given);
+  ctx.diagnostics->file_error(ctx.at(p), "cannot open " + as_given,
+                              path + ": " + reason + (hint.empty() ? "" : "; " + hint));
   return false;
 }
 

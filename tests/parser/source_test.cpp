@@ -149,5 +149,34 @@ TEST(DidYouMean, FindsSlips) {
   EXPECT_EQ(nearest_name(std::string(100000, 'x'), names), "");
 }
 
+TEST(Sources, NothingReachesATerminalRaw) {
+  // Colours, a title, C1 controls and a change of direction: in names of files, messages and remedies.
+  const std::string hostile = "\x1b[31m\x1b]0;t\x07\xc2\x9b\xe2\x80\xae.\r\n";
+  const std::string shown = "\\x1b[31m\\x1b]0;t\\x07\\xc2\\x9b\\u202e.\\x0d\\x0a";
+  EXPECT_EQ(printable(hostile), shown);
+  EXPECT_EQ(in_quotes(hostile), '"' + shown + '"');
+  EXPECT_EQ(quoted_path(hostile), '"' + shown + '"');
+  Sources sources;
+  const uint32_t file = sources.add_text(hostile, hostile);
+  Diagnostic d{Severity::Error, ErrorClass::Scene, {file, 0}, hostile, hostile};
+  d.other = {file, 3};
+  for (const char c : sources.render_diagnostic(d, false)) EXPECT_TRUE(c == '\n' || (c >= ' ' && c < 0x7f));
+  EXPECT_EQ(printable("caf\xc3\xa9 \xe6\x9c\xa8"), "caf\xc3\xa9 \xe6\x9c\xa8");  // Letters stay.
+}
+
+TEST(Sources, APathKeepsItsEnd) {
+  EXPECT_EQ(quoted_path("/a/b.pbrt"), "\"/a/b.pbrt\"");
+  const std::string folders = '/' + std::string(990, 'x');
+  EXPECT_EQ(quoted_path(folders + "/b.pbrt"), '"' + folders + "/b.pbrt\"");
+  const std::string cut = quoted_path(std::string(5000, 'x') + "/b.pbrt");
+  EXPECT_EQ(cut.size(), 1005u);
+  EXPECT_EQ(cut.substr(0, 5), "\"...x");
+  EXPECT_EQ(cut.substr(cut.size() - 8), "/b.pbrt\"");
+  // Not in the middle of a letter.
+  std::string letters;
+  for (int i = 0; i < 1000; ++i) letters += "\xc3\xa9";
+  EXPECT_EQ(quoted_path(letters + "x").substr(0, 6), "\"...\xc3\xa9");
+}
+
 }  // namespace
 }  // namespace whit

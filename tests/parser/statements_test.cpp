@@ -28,9 +28,41 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"Spheer 1 2 3", 2, 1, "unknown directive \"Spheer\"", ""},
         Mistake{"Shap \"sphere\"", 2, 1, "unknown directive", "did you mean Shape?"},
         Mistake{"translate 0 0 1", 2, 1, "unknown directive", "case sensitive: write Translate"},
-        Mistake{"SurfaceIntegrator \"whitted\"", 2, 1, "unknown directive", "it is Integrator"},
-        Mistake{"Renderer \"sampler\"", 2, 1, "unknown directive", "it is Integrator"},
-        Mistake{"ColorSpace \"srgb\"", 2, 1, "unknown directive", "pbrt-v4"},
+        Mistake{"SurfaceIntegrator \"whitted\"", 2, 1, "a pbrt-v2 file: pbrt-v3 has no statement SurfaceIntegrator",
+                "it is Integrator"},
+        Mistake{"Renderer \"sampler\"\nVolume \"homogeneous\"", 2, 1, "a pbrt-v2 file", "it is Integrator"},
+        // Said once, whatever else shows it.
+        Mistake{"ColorSpace \"srgb\"\nMaterial \"diffuse\"\nAttribute \"shape\" \"rgb r\" [1 1 1]\n"
+                "Shape \"s\" \"bool b\" true\nOption \"x\" 1",
+                2, 1, "a pbrt-v4 file: pbrt-v3 has no statement ColorSpace", "whit reads pbrt-v3"},
+        // One mistake each: the numbers are all there, and the word is no number.
+        Mistake{"Translate 0 0 5\nShpae \"sphere\"", 3, 1, "unknown directive \"Shpae\"", "did you mean Shape?"},
+        Mistake{"Scale 1 1 1 # unit\nShpae \"sphere\"", 3, 1, "unknown directive", ""},
+        Mistake{"Rotate 30 0 0 1\n  shape \"sphere\"", 3, 3, "unknown directive", "write Shape"},
+        Mistake{"LookAt 0 0 5 0 0 0 0 1 0 Shpae \"sphere\"", 2, 26, "unknown directive", ""},
+        Mistake{"ConcatTransform [ 1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1 ]\nShpae \"s\"", 3, 1, "unknown directive", ""},
+        Mistake{"Translate 0 0 5 five", 2, 17, "unknown directive \"five\"", ""},
+        Mistake{"Translate 0 0 five", 2, 15, "\"five\" is not a number", "needs 3 numbers"},
+        // What looks right and is not.
+        Mistake{"Translate\xc2\xa0"
+                "0 0 5",
+                2, 1, "\"Translate\\u00a00\"", "no-break space, U+00A0"},
+        Mistake{"Translate 0\xc2\xa0"
+                "0 5",
+                2, 11, "\"0\\u00a00\" is not a number", "no-break space, U+00A0"},
+        Mistake{"Shape \"s\" \"float\xc2\xa0radius\" 1", 2, 11, "a type and a name", "no-break space, U+00A0"},
+        Mistake{"\xe2\x80\x8bShape \"s\"", 2, 1, "\"\\u200bShape\"", "it holds \\u200b, which cannot be seen"},
+        Mistake{"Shape \"s\" \xe2\x80\x9c"
+                "float r\xe2\x80\x9d 1",
+                2, 11, "unknown directive", "\xe2\x80\x9c is no quote here"},
+        Mistake{"Shape 'sphere'", 2, 1, "Shape needs a name in quotes", "' is no quote here: write \""},
+        Mistake{"Translate 0 0 \xe2\x88\x92"
+                "5",
+                2, 15, "is not a number", "write -"},
+        Mistake{"// a comment of C", 2, 1, "unknown directive \"//\"", "comments begin with #"},
+        Mistake{"//Shape \"s\"", 2, 1, "unknown directive \"//\"", "comments begin with #"},
+        Mistake{"/* a comment of C */", 2, 1, "unknown directive", "comments begin with #"},
+        Mistake{"Shape \"s\" \"float r\" [ 1 // one\n ]", 2, 25, "is not a number", "comments begin with #"},
         Mistake{"[ 1 2 ]", 2, 1, "unexpected [", ""}, Mistake{"]", 2, 1, "unexpected ]", ""},
         Mistake{"12", 2, 1, "unexpected number \"12\"", "directive"},
         Mistake{"\"sphere\"", 2, 1, "unexpected string \"sphere\"", "directive"},
@@ -118,6 +150,37 @@ TEST(Statements, TheMaterialStaysWhereTheNamedOneIsUnknown) {
   for (const ShapeDescription& s : parsed.scene().shapes)
     materials.push_back(parsed.scene().materials[static_cast<size_t>(s.material)].plugin);
   EXPECT_EQ(materials, (std::vector<std::string>{"mirror", "mirror", "glass", "glass"}));
+}
+
+TEST(Statements, PluginsOfAnotherVersionAreAWarning) {
+  // Something may stand in for them, as in pbrt-v3; other statements decide whether the file can be read.
+  expect_only(
+      Parsed("Sampler \"zsobol\"\nFilm \"rgb\"\n" + in_world("MakeNamedMaterial \"m\" \"string type\" \"conductor\"")),
+      Severity::Warning, 1, 1, "this is a pbrt-v4 file: pbrt-v3 has no Sampler \"zsobol\"");
+  // pbrt-v4 has no WorldEnd.
+  expect_only(Parsed("Film \"rgb\"\nWorldBegin\nShape \"s\"\n"), Severity::Error, 1, 1, "this is a pbrt-v4 file");
+  // One of each version.
+  EXPECT_EQ(Parsed(in_world("Renderer \"s\"\nOption \"x\" 1\nVolume \"v\"")).all().size(), 2u);
+}
+
+TEST(Statements, TwoMistakesAreTwoMessages) {
+  // Numbers that are missing, and a directive that is misspelt.
+  const Parsed parsed(in_world("Translate 0 0\nShpae \"s\""));
+  ASSERT_EQ(parsed.all().size(), 2u) << parsed.messages();
+  EXPECT_NE(parsed.all()[0].message.find("needs 3 numbers, but there are 2"), std::string::npos);
+  EXPECT_NE(parsed.all()[1].message.find("unknown directive"), std::string::npos);
+}
+
+TEST(Statements, PathsAreShownToTheirEndWithAHint) {
+  const std::string folder = "/nowhere/" + std::string(200, 'a');
+  const Parsed parsed(in_world("Include \"geometry/missing.pbrt\""), folder);
+  ASSERT_EQ(parsed.all().size(), 1u);
+  EXPECT_NE(parsed.all()[0].message.find("/geometry/missing.pbrt\": No such file"), std::string::npos);
+  expect_only(Parsed(in_world("Include \"geometry\\\\b.pbrt\"")), Severity::Error, 2, 9, "cannot open",
+              "write / between folders");
+  // \b is a backspace: shown escaped, and explained.
+  expect_only(Parsed(in_world("Include \"geometry\\b.pbrt\"")), Severity::Error, 2, 9, "geometry\\x08.pbrt",
+              "write / between folders");
 }
 
 TEST(Statements, RedefinedNamedMaterialIsAWarning) {

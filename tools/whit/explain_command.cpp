@@ -17,7 +17,8 @@ namespace {
 // ---- In words ----
 
 void print_causes(const EffectUse& use, const Sources& sources) {
-  for (const EffectCause& c : use.causes) fmt::print("      for {} at {}\n", c.what, sources.location(c.where));
+  for (const EffectCause& c : use.causes)
+    fmt::print("      for {} at {}\n", printable(c.what), sources.location(c.where));
   const size_t more = use.count - use.causes.size();
   if (more > 0) fmt::print("      and for {} more\n", more);
 }
@@ -61,7 +62,7 @@ void print_uncalled(const EffectSet& uncalled) {
 void print_off(const EffectPlan& plan, const Sources& sources) {
   fmt::print("off\n");
   for_effects(plan.called_for - plan.needed, [&](Effect e) {
-    fmt::print("  {:<20}{}\n", effect_name(e), plan.use(e).why_off);
+    fmt::print("  {:<20}{}\n", effect_name(e), printable(plan.use(e).why_off));
     print_causes(plan.use(e), sources);
   });
   print_uncalled(EffectSet::all() - plan.called_for);
@@ -72,7 +73,7 @@ void print_files(const std::vector<LeftOutFile>& files) {
   double more = 0;
   for (size_t i = 0; i < files.size(); ++i) {
     const auto bytes = static_cast<double>(files[i].bytes);
-    if (i < kShown) fmt::print("      not read: {}, {}\n", files[i].name, bytes_text(bytes));
+    if (i < kShown) fmt::print("      not read: {}, {}\n", printable(files[i].name), bytes_text(bytes));
     else more += bytes;
   }
   if (files.size() > kShown) fmt::print("      and {} more files, {}\n", files.size() - kShown, bytes_text(more));
@@ -85,7 +86,7 @@ void print_left_out(const std::vector<LeftOut>& left_out, const Sources& sources
   std::map<std::string, int> seen;
   for (const LeftOut& l : left_out) {
     if (++seen[l.kind] > kShown) continue;
-    fmt::print("  {} \"{}\" at {}: {}\n", l.kind, l.name, sources.location(l.where), l.reason);
+    fmt::print("  {} \"{}\" at {}: {}\n", l.kind, printable(l.name), sources.location(l.where), printable(l.reason));
     print_files(l.files);
   }
   for (const auto& [kind, count] : seen) {
@@ -98,7 +99,7 @@ void print_world(const PlannedScene& world, const Sources& sources) {
   print_off(world.plan, sources);
   print_left_out(find_left_out(world.bound, world.plan), sources);
   if (!world.plan.ignored.empty()) fmt::print("not simulated\n");
-  for (const Ignored& i : world.plan.ignored) fmt::print("  {} at {}\n", i.what, sources.location(i.where));
+  for (const Ignored& i : world.plan.ignored) fmt::print("  {} at {}\n", printable(i.what), sources.location(i.where));
 }
 
 // ---- For machines ----

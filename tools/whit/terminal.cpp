@@ -17,7 +17,13 @@ namespace whit {
 
 bool use_colour() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
 
-void say(const std::string& line) { fmt::print(stderr, "{}\n", line); }
+void say(const std::string& text) {
+  for (size_t at = 0; at <= text.size();) {
+    const size_t end = std::min(text.find('\n', at), text.size());
+    fmt::print(stderr, "{}\n", printable(std::string_view(text).substr(at, end - at)));
+    at = end + 1;
+  }
+}
 
 void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings) {
   // A mistake of an exporter's comes a thousand times; a few places are as good as all.

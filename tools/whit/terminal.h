@@ -12,8 +12,8 @@ namespace whit {
 /// True when stderr is a terminal and NO_COLOR is not set.
 bool use_colour();
 
-/// Prints a line to stderr.
-void say(const std::string& line);
+/// Prints a line, or several, to stderr, with control characters escaped.
+void say(const std::string& text);
 
 /// Prints diagnostics in file order with their places, and how many there were: of equal ones three, of errors and of
 /// warnings a hundred. `quiet_warnings` keeps errors only.
