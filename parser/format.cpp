@@ -262,16 +262,24 @@ class Formatter {
     if (statement_.row->nesting > 0) ++depth_;
   }
 
+  /// Puts a mesh into a file of its own, with the first name from mesh_00001.ply on that is free.
   void export_mesh() {
-    char name[32];
-    std::snprintf(name, sizeof name, "mesh_%05d.ply", ++meshes_);
-    const std::string path = join_path(options_.ply_folder, name);
-    std::string problem;
-    if (write_mesh(statement_, path, problem)) {
-      replace_by_plymesh(statement_, name);
-    } else {
-      reporter_.file_error(statement_.where, "cannot write " + in_quotes(path) + ": " + problem);
+    const std::string ply = mesh_as_ply(statement_);
+    std::string path, name, problem;
+    NewFile outcome = NewFile::NameTaken;
+    while (outcome == NewFile::NameTaken) {
+      char digits[16];
+      std::snprintf(digits, sizeof digits, "%05d", ++meshes_);
+      name = std::string("mesh_") + digits + ".ply";
+      path = join_path(options_.ply_folder, name);
+      outcome = write_new_file(path, ply, problem);
     }
+    if (outcome == NewFile::Failed) {
+      reporter_.file_error(statement_.where, "cannot write " + quoted_path(path) + ": " + problem);
+      return;
+    }
+    if (outcome == NewFile::Written && options_.written) options_.written->push_back(path);
+    replace_by_plymesh(statement_, name);
   }
 
   void expand_include() {
@@ -302,7 +310,8 @@ Diagnostics format(Sources& sources, uint32_t file, std::string folder, std::ost
                    const FormatOptions& options) {
   Diagnostics diagnostics;
   Reporter reporter(diagnostics);
-  if (check_is_scene(sources, file, reporter)) {
+  // A file that is empty, or nothing but space, may be included.
+  if (!sources.text(file).empty() && check_is_scene(sources, file, reporter)) {
     Formatter(sources, reporter, std::move(folder), out, options).format(file);
   }
   reporter.finish();
@@ -316,7 +325,7 @@ Diagnostics format_file(Sources& sources, const std::string& path, std::ostream&
   if (const std::optional<uint32_t> file = sources.open(path, problem))
     return format(sources, *file, fs::path(path).parent_path().string(), out, options);
   Diagnostics diagnostics;
-  diagnostics.file_error({}, "cannot open " + in_quotes(path) + ": " + problem);
+  diagnostics.file_error({}, "cannot open " + quoted_path(path) + ": " + problem);
   return diagnostics;
 }
 

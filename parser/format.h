@@ -3,6 +3,7 @@
 
 #include <iosfwd>
 #include <string>
+#include <vector>
 
 #include "core/base/diagnostics.h"
 #include "parser/source.h"
@@ -12,7 +13,8 @@ namespace whit {
 struct FormatOptions {
   bool expand_includes = false;  ///< Put the statements of included files in place of the Include, as --cat does.
   bool to_ply = false;           ///< Write large inline triangle meshes to PLY files, as --toply does.
-  std::string ply_folder;        ///< Where those go: mesh_00001.ply and so on; "" is the current folder.
+  std::string ply_folder;        ///< Where those go, under names from mesh_00001.ply on that are free; "" is here.
+  std::vector<std::string>* written = nullptr;  ///< Takes the paths of the PLY files, if given.
 };
 
 /// Writes the statements of a file to `out`: one a line, two spaces of indentation for each open AttributeBegin,

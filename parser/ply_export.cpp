@@ -1,11 +1,16 @@
 #include "parser/ply_export.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
+#include <system_error>
 
 namespace whit {
 
@@ -104,6 +109,16 @@ std::string body(const MeshData& mesh, bool doubles) {
   return out;
 }
 
+/// Whether a file holds exactly `data`.
+bool holds(const std::string& path, const std::string& data) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(path, failed) || std::filesystem::file_size(path, failed) != data.size())
+    return false;
+  std::ifstream file(path, std::ios::binary);
+  std::string there(data.size(), '\0');
+  return file.read(there.data(), static_cast<std::streamsize>(there.size())) && there == data;
+}
+
 }  // namespace
 
 bool can_export_mesh(const Statement& statement) {
@@ -113,17 +128,29 @@ bool can_export_mesh(const Statement& statement) {
   return mesh.indices->integers().size() > kInlineIndices && is_consistent(mesh);
 }
 
-bool write_mesh(const Statement& statement, const std::string& path, std::string& problem) {
+std::string mesh_as_ply(const Statement& statement) {
   const MeshData mesh = mesh_data(statement);
   const bool doubles = needs_double(mesh.positions->numbers());
-  errno = 0;
-  std::ofstream file(path, std::ios::binary);
-  const std::string data = header(mesh, doubles) + body(mesh, doubles);
-  file.write(data.data(), static_cast<std::streamsize>(data.size()));
-  file.close();
-  if (!file.fail()) return true;
-  problem = errno != 0 ? std::strerror(errno) : "writing failed";
-  return false;
+  return header(mesh, doubles) + body(mesh, doubles);
+}
+
+NewFile write_new_file(const std::string& path, const std::string& data, std::string& problem) {
+  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  if (descriptor < 0 && errno == EEXIST) return holds(path, data) ? NewFile::HasTheSame : NewFile::NameTaken;
+  bool good = descriptor >= 0;
+  for (size_t done = 0; good && done < data.size();) {
+    const ssize_t wrote = ::write(descriptor, data.data() + done, data.size() - done);
+    if (wrote > 0) done += static_cast<size_t>(wrote);
+    good = wrote > 0 || errno == EINTR;
+  }
+  if (!good) problem = std::strerror(errno);
+  if (descriptor < 0) return NewFile::Failed;
+  if (::close(descriptor) != 0 && good) {
+    problem = std::strerror(errno);
+    good = false;
+  }
+  if (!good) ::unlink(path.c_str());
+  return good ? NewFile::Written : NewFile::Failed;
 }
 
 void replace_by_plymesh(Statement& statement, const std::string& filename) {

@@ -176,6 +176,33 @@ TEST_F(FormatFiles, LargeMeshesBecomePlyFiles) {
   EXPECT_NE(text.find("property double x"), std::string::npos);
 }
 
+TEST_F(FormatFiles, MeshesTakeNamesThatAreFree) {
+  std::vector<std::string> written;
+  FormatOptions options;
+  options.to_ply = true;
+  options.ply_folder = folder_;
+  options.written = &written;
+  const auto path = [this](const std::string& name) { return folder_ + "/" + name; };
+  std::ofstream(path("mesh_00001.ply")) << "another scene's";
+  std::filesystem::create_symlink(path("not-there"), path("mesh_00002.ply"));
+  std::filesystem::create_directory(path("mesh_00003.ply"));
+  const std::string once = formatted(fan(167, 0) + fan(168, 0), options);
+  EXPECT_NE(once.find("\"mesh_00004.ply\""), std::string::npos) << once;
+  EXPECT_NE(once.find("\"mesh_00005.ply\""), std::string::npos) << once;
+  EXPECT_EQ(written, (std::vector<std::string>{path("mesh_00004.ply"), path("mesh_00005.ply")}));
+  EXPECT_EQ(std::filesystem::file_size(path("mesh_00001.ply")), 15u);
+  EXPECT_FALSE(std::filesystem::exists(path("not-there")));
+  // Once more: the very same meshes are there already.
+  written.clear();
+  EXPECT_EQ(formatted(fan(167, 0) + fan(168, 0), options), once);
+  EXPECT_TRUE(written.empty());
+}
+
+TEST(Format, AnEmptyFileMayBeIncluded) {
+  EXPECT_EQ(formatted(""), "");
+  EXPECT_EQ(formatted(" \n\n"), "");
+}
+
 TEST_F(FormatFiles, WrongMeshesStayInline) {
   FormatOptions options;
   options.to_ply = true;

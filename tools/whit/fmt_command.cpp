@@ -3,35 +3,24 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <sstream>
+#include <vector>
 
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
+#include "tools/whit/replace_file.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
 
-/// Replaces a file by new text through a temporary name, so that a failure leaves the old one.
-int replace_file(const std::string& path, const std::string& text) {
-  const std::string temporary = path + ".whit-fmt";
-  {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    if (!out.flush()) {
-      say(fmt::format("whit fmt: cannot write {}", temporary));
-      std::filesystem::remove(temporary);
-      return kFileError;
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, path, error);
-  if (!error) return kDone;
-  say(fmt::format("whit fmt: cannot replace {}: {}", path, error.message()));
-  return kFileError;
+/// What was written for a scene that did not come about is of no use.
+int give_up(const std::vector<std::string>& written, int code) {
+  std::error_code ignored;
+  for (const std::string& path : written) std::filesystem::remove(path, ignored);
+  return code;
 }
 
 }  // namespace
@@ -48,23 +37,35 @@ int fmt_command(const Arguments& args) {
                              {"--toply", &options.to_ply, "Write large inline meshes to PLY files"}}};
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
-  if (in_place && path.empty()) {
+  const bool standard_input = path.empty() || path == "-";
+  if (in_place && standard_input) {
     say("whit fmt: --in-place needs a file");
     return kUsage;
   }
   Sources sources;
   std::ostringstream text;
   Diagnostics d;
-  if (path.empty() || path == "-") {
+  std::vector<std::string> written;
+  options.written = &written;
+  // Beside the scene, from whose folder the names in it start.
+  if (!standard_input) options.ply_folder = std::filesystem::path(path).parent_path().string();
+  if (standard_input) {
     d = format_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}}, "", text, options);
   } else {
     d = format_file(sources, path, text, options);
   }
   print_diagnostics(sources, d);
-  if (d.has_errors()) return exit_code(d);
-  if (in_place) return replace_file(path, text.str());
-  std::cout << text.str() << std::flush;
-  return std::cout ? kDone : kFileError;
+  if (d.has_errors()) return give_up(written, exit_code(d));
+  std::string problem;
+  if (in_place) {
+    problem = replace_file(path, text.str());
+    if (!problem.empty()) problem = fmt::format("cannot replace {}: {}", path, problem);
+  } else if (!(std::cout << text.str() << std::flush)) {
+    problem = "cannot write to standard output";
+  }
+  if (problem.empty()) return kDone;
+  say("whit fmt: " + problem);
+  return give_up(written, kFileError);
 }
 
 }  // namespace whit

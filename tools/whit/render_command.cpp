@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -23,6 +24,7 @@ int print_normal_form(const RenderSettings& s) {
     FormatOptions options;
     options.expand_includes = true;
     options.to_ply = s.toply;
+    if (path != "-") options.ply_folder = std::filesystem::path(path).parent_path().string();
     const Diagnostics d =
         path == "-" ? format_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}}, "",
                                   std::cout, options)
@@ -30,7 +32,9 @@ int print_normal_form(const RenderSettings& s) {
     print_diagnostics(sources, d);
     code = std::max(code, exit_code(d));
   }
-  return code;
+  if (std::cout.flush()) return code;
+  say("whit: cannot write to standard output");
+  return std::max<int>(code, kFileError);
 }
 
 }  // namespace
