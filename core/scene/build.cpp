@@ -456,7 +456,8 @@ class Builder {
       if (!has_alpha[i] && !scene_->plan.everything_on) continue;
       tests[i] = make_alpha_test(shapes[i], *plugins_[first + i], group.space.to_world() * scene_->space.from_world());
     }
-    Coincidences found = find_coincidences(shapes, has_alpha);
+    Coincidences found = find_coincidences(
+        shapes, has_alpha, group.accel_group == Accel::kWorld ? std::optional(Vec3d(0, 0, 0)) : std::nullopt);
     for (auto& [cut_shape, cut] : found.cuts) {
       auto& test = tests[static_cast<size_t>(cut_shape)];
       test = both(std::move(test), std::move(cut));

@@ -1,7 +1,9 @@
 #include "core/scene/coincidence.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <set>
@@ -12,14 +14,19 @@
 namespace whit {
 namespace {
 
-constexpr size_t kMostTriangles = 256, kMostShapes = 20000;
+/// Shapes that are compared with all their neighbours come first; larger ones share what is left of the budget.
+constexpr size_t kSmallMesh = 256, kMostShapes = 20000;
 /// Of triangles and of sampled points: about a quarter of a second. Only scenes with many copies in one place need more.
 constexpr size_t kMostComparisons = 10'000'000;
-/// Groups are about a hundred units wide: vertices are rounded to 4e-6 there, and analytic shapes are not rounded.
-constexpr double kMeshTolerance = 2e-5, kAnalyticTolerance = 1e-9;
+/// Vertices are rounded to 6e-8 of their distance from the group's origin, and analytic shapes are not rounded. Groups
+/// are about a hundred units wide, and huge triangles, whose corners are in double, are compared as if they were, too.
+constexpr double kMeshTolerance = 2e-7, kExactTolerance = 2e-5, kAnalyticTolerance = 1e-11;
+/// A hit's point is rounded by half of that.
+constexpr double kRimTolerance = 1.5;
 
 struct Triangle {
   Vec3d a, b, c;
+  double tolerance;  ///< How far rounding may have moved its plane.
   Vec3d normal() const { return (b - a).cross(c - a).normalized(); }
   Box3d bounds() const {
     Box3d box(a);
@@ -29,8 +36,15 @@ struct Triangle {
 };
 
 Triangle triangle_of(const Mesh& mesh, size_t prim) {
-  const auto corner = [&](size_t k) { return Vec3d(mesh.position(mesh.indices[3 * prim + k])); };
-  return {corner(0), corner(1), corner(2)};
+  Triangle t{mesh.corner(prim, 0), mesh.corner(prim, 1), mesh.corner(prim, 2), kExactTolerance};
+  if (mesh.exact.empty()) t.tolerance = kMeshTolerance * std::max({t.a.length(), t.b.length(), t.c.length()});
+  return t;
+}
+
+/// Of a triangle in double and one in floats, the latter decides where they may meet.
+double tolerance_of(const Triangle& a, bool a_is_exact, const Triangle& b, bool b_is_exact) {
+  if (a_is_exact != b_is_exact) return a_is_exact ? b.tolerance : a.tolerance;
+  return std::max(a.tolerance, b.tolerance);
 }
 
 /// How far inside of the triangle p lies when it is taken along the normal onto its plane; negative outside.
@@ -42,10 +56,19 @@ double depth_inside(const Triangle& t, const Vec3d& p) {
   return std::min({inside(t.a, t.b), inside(t.b, t.c), inside(t.c, t.a)});
 }
 
-bool in_plane(const Triangle& t, const Triangle& of) {
+bool in_plane(const Triangle& t, const Triangle& of, double tolerance) {
   const Vec3d n = of.normal();
-  const auto near = [&](const Vec3d& p) { return std::abs(n.dot(p - of.a)) <= kMeshTolerance; };
+  const auto near = [&](const Vec3d& p) { return std::abs(n.dot(p - of.a)) <= tolerance; };
   return near(t.a) && near(t.b) && near(t.c);
+}
+
+/// Whether triangles lie in one plane, as far as the plane of the larger tells: beyond the smaller its own plane would be
+/// too far off.
+bool in_one_plane(const Triangle& a, const Triangle& b, double tolerance) {
+  constexpr double kParallel = 0.99;
+  const bool a_is_larger = a.bounds().size().length2() > b.bounds().size().length2();
+  return std::abs(a.normal().dot(b.normal())) > kParallel &&
+         (a_is_larger ? in_plane(b, a, tolerance) : in_plane(a, b, tolerance));
 }
 
 /// Whether an edge of a parts the triangles, which lie in one plane: no part of b reaches further inside than `reach`.
@@ -59,16 +82,18 @@ bool parted_by_an_edge(const Triangle& a, const Triangle& b, double reach) {
   return parts(a.a, a.b) || parts(a.b, a.c) || parts(a.c, a.a);
 }
 
-/// Whether triangles in one plane overlap by more than `reach`; when that is negative, whether they come so near.
-bool overlap(const Triangle& a, const Triangle& b, double reach) {
+/// Whether triangles lie in one plane and overlap by more than `reach`; when that is negative, whether they come so near.
+bool overlap(const Triangle& a, const Triangle& b, double tolerance, double reach) {
   Box3d near = a.bounds();
-  near.min -= Vec3d(4 * kMeshTolerance), near.max += Vec3d(4 * kMeshTolerance);
-  return near.intersects(b.bounds()) && in_plane(a, b) && in_plane(b, a) && !parted_by_an_edge(a, b, reach) &&
+  near.min -= Vec3d(4 * tolerance), near.max += Vec3d(4 * tolerance);
+  return near.intersects(b.bounds()) && in_one_plane(a, b, tolerance) && !parted_by_an_edge(a, b, reach) &&
          !parted_by_an_edge(b, a, reach);
 }
 
-bool coincide(const Triangle& a, const Triangle& b) { return overlap(a, b, 2 * kMeshTolerance); }
-bool touch(const Triangle& a, const Triangle& b) { return overlap(a, b, -4 * kMeshTolerance); }
+bool coincide(const Triangle& a, const Triangle& b, double tolerance) {
+  return overlap(a, b, tolerance, 2 * tolerance);
+}
+bool touch(const Triangle& a, const Triangle& b, double tolerance) { return overlap(a, b, tolerance, -4 * tolerance); }
 
 /// Whether the analytic shape has a surface at a point of its group's space, within a tolerance: looked for along the
 /// shape's own normal there.
@@ -97,28 +122,42 @@ std::vector<Vec3d> points_on(const AnalyticShape& shape) {
 /// A flat analytic shape, a disk, in its group's space. What is curved can only touch a plane, and is not flat.
 class FlatShape {
  public:
-  explicit FlatShape(const AnalyticShape& shape) : shape_(shape) {
+  explicit FlatShape(const AnalyticShape& shape) : shape_(shape), points_(points_on(shape)) {
     const SurfacePoint any = shape.surface(shape.sample_area(0.5, 0.5).p);
-    flat_ = any.dndu.length2() == 0 && any.dndv.length2() == 0;
-    if (!flat_) return;
     const Mat4d& m = shape.object_to_scene();
     at_ = transform_point(m, any.p);
     normal_ = transform_vector(m, any.dpdu).cross(transform_vector(m, any.dpdv)).normalized();
-    points_ = points_on(shape);
+  }
+
+  static bool is_flat(const AnalyticShape& shape) {
+    const SurfacePoint any = shape.surface(shape.sample_area(0.5, 0.5).p);
+    return any.dndu.length2() == 0 && any.dndv.length2() == 0;
   }
 
   /// Whether it shares a part of its plane with a triangle.
   bool coincides(const Triangle& t) const {
-    if (!flat_ || off_plane(t.a) || off_plane(t.b) || off_plane(t.c)) return false;
-    return has_surface_at(shape_, (t.a + t.b + t.c) / 3, kMeshTolerance) ||
+    if (off_plane(t, t.a) || off_plane(t, t.b) || off_plane(t, t.c)) return false;
+    return any_point_on(t) ||
            std::any_of(points_.begin(), points_.end(), [&](const Vec3d& p) { return depth_inside(t, p) >= 0; });
   }
+  Vec3d normal() const { return normal_; }
 
  private:
-  bool off_plane(const Vec3d& p) const { return std::abs(normal_.dot(p - at_)) > kMeshTolerance; }
+  bool off_plane(const Triangle& t, const Vec3d& p) const { return std::abs(normal_.dot(p - at_)) > t.tolerance; }
+
+  /// Whether one of 28 points all over the triangle is on the shape.
+  bool any_point_on(const Triangle& t) const {
+    constexpr int kRows = 7;
+    for (int i = 0; i < kRows; ++i) {
+      for (int j = 0; i + j < kRows; ++j) {
+        const double u = (i + 1.0 / 3) / kRows, v = (j + 1.0 / 3) / kRows;
+        if (has_surface_at(shape_, t.a + u * (t.b - t.a) + v * (t.c - t.a), t.tolerance)) return true;
+      }
+    }
+    return false;
+  }
 
   const AnalyticShape& shape_;
-  bool flat_;
   Vec3d at_, normal_;
   std::vector<Vec3d> points_;
 };
@@ -126,9 +165,11 @@ class FlatShape {
 /// Cuts a shape away where upper ones lie in it. Shadow rays are blocked by either.
 class UnderOthers final : public AlphaTest {
  public:
-  void add(size_t prim, const Triangle& upper) { triangles_[prim].push_back(upper); }
+  void add(size_t prim, const Triangle& upper, double tolerance) {
+    triangles_[prim].push_back({upper, kRimTolerance * tolerance});
+  }
   void add(const AnalyticShape& upper) { analytic_.push_back(&upper); }
-  void add_everywhere(const Triangle& upper) { everywhere_.push_back(upper); }
+  void add_everywhere(const Triangle& upper) { everywhere_.push_back({upper, kRimTolerance * upper.tolerance}); }
 
   bool cut(uint32_t prim, float, float, const Vec3f& hit, bool shadow_ray) const override {
     if (shadow_ray) return false;
@@ -141,41 +182,66 @@ class UnderOthers final : public AlphaTest {
   }
 
  private:
+  struct Upper {
+    Triangle triangle;
+    double rim;
+  };
+
   /// Only where the upper surface is sure to be hit, well within a triangle or between two: at its rim either will do.
-  static bool is_under(const std::vector<Triangle>& upper, const Vec3d& p) {
+  static bool is_under(const std::vector<Upper>& upper, const Vec3d& p) {
     int between = 0;
-    for (const Triangle& t : upper) {
-      const double depth = depth_inside(t, p);
-      if (depth >= kRim || (depth >= -kRim && ++between == 2)) return true;
+    for (const Upper& u : upper) {
+      const double depth = depth_inside(u.triangle, p);
+      if (depth >= u.rim || (depth >= -u.rim && ++between == 2)) return true;
     }
     return false;
   }
 
-  static constexpr double kRim = 3e-5;  ///< A hit's point is rounded by half of that in a group's hundred units.
-  std::map<size_t, std::vector<Triangle>> triangles_;
-  std::vector<Triangle> everywhere_;
+  static constexpr double kRim = kRimTolerance * kExactTolerance;
+  std::map<size_t, std::vector<Upper>> triangles_;
+  std::vector<Upper> everywhere_;
   std::vector<const AnalyticShape*> analytic_;
 };
 
-/// True when every edge is also that of a neighbour, the other way round: a solid, whose faces are hidden where it stands
-/// on something.
-bool is_closed(const Mesh& mesh) {
-  using Point = std::array<float, 3>;
-  std::map<std::pair<Point, Point>, int> balance;
-  for (size_t i = 0; i < mesh.indices.size(); i += 3) {
+/// Spreads a number over 64 bits (the finaliser of splitmix64).
+uint64_t mix_bits(uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// A number for an edge, with the other sign for the same edge the other way round.
+uint64_t hash_of_edge(const Vec3f& from, const Vec3f& to) {
+  const auto hash = [](uint64_t h, const Vec3f& p) {
+    for (const float v : {p.x, p.y, p.z}) h = mix_bits(h ^ std::bit_cast<uint32_t>(v + 0.0f));  // -0 is 0
+    return h;
+  };
+  const auto key = [](const Vec3f& p) { return std::make_tuple(p.x, p.y, p.z); };
+  return key(from) < key(to) ? hash(hash(1, from), to) : uint64_t{0} - hash(hash(1, to), from);
+}
+
+/// 0 when not every edge is also that of a neighbour, the other way round. Else it is a solid, whose faces are hidden
+/// where it stands on something, and its sides are where its triangles' normals point (1) or away from there (-1).
+int solid_side(const Mesh& mesh) {
+  uint64_t balance = 0;
+  double volume = 0;
+  const Vec3d middle = mesh.corner(0, 0);
+  for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     for (size_t k = 0; k < 3; ++k) {
-      const Vec3f p = mesh.position(mesh.indices[i + k]), q = mesh.position(mesh.indices[i + (k + 1) % 3]);
-      const Point a{p.x, p.y, p.z}, b{q.x, q.y, q.z};
-      balance[std::minmax(a, b)] += a < b ? 1 : -1;
+      balance += hash_of_edge(mesh.position(mesh.indices[3 * t + k]), mesh.position(mesh.indices[3 * t + (k + 1) % 3]));
     }
+    volume += (mesh.corner(t, 0) - middle).dot((mesh.corner(t, 1) - middle).cross(mesh.corner(t, 2) - middle));
   }
-  return std::all_of(balance.begin(), balance.end(), [](const auto& edge) { return edge.second == 0; });
+  if (balance != 0 || volume == 0) return 0;
+  return volume > 0 ? 1 : -1;
 }
 
 bool coincide(const AnalyticShape& lower, const AnalyticShape& upper) {
   const std::vector<Vec3d> points = points_on(lower), others = points_on(upper);
   const auto lies_in = [](const AnalyticShape& shape) {
-    return [&](const Vec3d& p) { return has_surface_at(shape, p, kAnalyticTolerance); };
+    const Box3d box = transform_box(shape.object_to_scene(), shape.object_bounds());
+    const double tolerance = kAnalyticTolerance * std::max(100.0, box.size().length());
+    return [&shape, tolerance](const Vec3d& p) { return has_surface_at(shape, p, tolerance); };
   };
   return std::any_of(points.begin(), points.end(), lies_in(upper)) ||
          std::any_of(others.begin(), others.end(), lies_in(lower));
@@ -188,7 +254,7 @@ Box3d bounds_of(const SceneShape& shape) {
   } else {
     box = transform_box(shape.analytic->object_to_scene(), shape.analytic->object_bounds());
   }
-  box.min -= Vec3d(kMeshTolerance), box.max += Vec3d(kMeshTolerance);
+  box.min -= Vec3d(kExactTolerance), box.max += Vec3d(kExactTolerance);
   return box;
 }
 
@@ -197,7 +263,7 @@ struct Candidate {
   Box3d bounds;
 };
 
-/// Calls f for each pair of shapes whose boxes meet: a sweep along x.
+/// Calls f for each pair of shapes whose boxes meet, with the box they share: a sweep along x.
 template <class F>
 void for_neighbours(std::vector<Candidate>& candidates, const F& f) {
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
@@ -205,8 +271,7 @@ void for_neighbours(std::vector<Candidate>& candidates, const F& f) {
   });
   for (size_t i = 0; i < candidates.size(); ++i) {
     for (size_t j = i + 1; j < candidates.size() && candidates[j].bounds.min.x <= candidates[i].bounds.max.x; ++j) {
-      if (!candidates[i].bounds.intersects(candidates[j].bounds)) continue;
-      f(std::min(candidates[i].shape, candidates[j].shape), std::max(candidates[i].shape, candidates[j].shape));
+      if (candidates[i].bounds.intersects(candidates[j].bounds)) f(candidates[i], candidates[j]);
     }
   }
 }
@@ -214,16 +279,19 @@ void for_neighbours(std::vector<Candidate>& candidates, const F& f) {
 /// Compares shapes and keeps what has to be cut away, and what has to be said.
 class Finder {
  public:
-  Finder(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha)
-      : shapes_(shapes), has_alpha_(has_alpha) {}
+  Finder(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha, const std::optional<Vec3d>& eye)
+      : shapes_(shapes), has_alpha_(has_alpha), eye_(eye) {}
 
-  void compare(int lower, int upper) {
+  void compare(int lower, int upper, const Box3d& where) {
     const SceneShape &l = shapes_[static_cast<size_t>(lower)], &u = shapes_[static_cast<size_t>(upper)];
-    comparisons_ += parts(l) * parts(u);
+    if (l.where.file == u.where.file && l.where.offset == u.where.offset) return;  // Two parts of one shape.
+    if (l.analytic && u.mesh && !FlatShape::is_flat(*l.analytic)) return;
+    if (u.analytic && l.mesh && !FlatShape::is_flat(*u.analytic)) return;
+    comparisons_ += parts(l) + parts(u);
     if (comparisons_ > kMostComparisons) return;
     bool any = false;
     if (l.mesh && u.mesh) {
-      any = compare_meshes(lower, upper);
+      any = compare_meshes(lower, upper, where);
     } else if (l.analytic && u.analytic) {
       any = coincide(*l.analytic, *u.analytic);
     } else {
@@ -231,7 +299,7 @@ class Finder {
     }
     if (!any) return;
     found_.pairs.push_back({lower, upper});
-    if (u.analytic && !has_alpha_[static_cast<size_t>(upper)]) cut(lower).add(*u.analytic);
+    if (l.analytic && u.analytic && !has_alpha(upper)) cut(lower).add(*u.analytic);
   }
 
   Coincidences take() {
@@ -251,60 +319,112 @@ class Finder {
     return *test;
   }
 
+  /// The triangles of a shape that reach into a box, by where they begin in x.
+  std::vector<size_t> triangles_in(int shape, const Box3d& box) const {
+    const Mesh& mesh = mesh_of(shape);
+    std::vector<std::pair<double, size_t>> found;
+    for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+      const Box3d bounds = triangle_of(mesh, t).bounds();
+      if (bounds.intersects(box)) found.emplace_back(bounds.min.x, t);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<size_t> triangles;
+    for (const auto& [x, t] : found) triangles.push_back(t);
+    return triangles;
+  }
+
+  const Mesh& mesh_of(int shape) const { return *shapes_[static_cast<size_t>(shape)].mesh; }
+  bool has_alpha(int shape) const { return has_alpha_[static_cast<size_t>(shape)]; }
+
   /// Cuts a triangle of a shape away where another shape lies in it, also between the triangles of that.
-  void cut_triangle(int shape, size_t prim, int other) {
-    if (has_alpha_[static_cast<size_t>(other)] || !done_.insert({shape, prim, other}).second) return;
-    const Mesh& mesh = *shapes_[static_cast<size_t>(other)].mesh;
-    const Triangle a = triangle_of(*shapes_[static_cast<size_t>(shape)].mesh, prim);
-    for (size_t j = 0; j < mesh.triangle_count(); ++j) {
-      const Triangle b = triangle_of(mesh, j);
-      if (touch(a, b)) cut(shape).add(prim, b);
+  void cut_triangle(int shape, size_t prim, int other, const std::vector<size_t>& others) {
+    if (has_alpha(other) || !done_.insert({shape, prim, other}).second) return;
+    const Triangle a = triangle_of(mesh_of(shape), prim);
+    for (const size_t j : others) {
+      const Triangle b = triangle_of(mesh_of(other), j);
+      const double tolerance = tolerance_of(a, is_exact(shape), b, is_exact(other));
+      if (touch(a, b, tolerance)) cut(shape).add(prim, b, tolerance);
     }
   }
 
-  bool compare_meshes(int lower, int upper) {
-    const Mesh &l = *shapes_[static_cast<size_t>(lower)].mesh, &u = *shapes_[static_cast<size_t>(upper)].mesh;
-    bool any = false;
-    for (size_t i = 0; i < l.triangle_count(); ++i) {
-      const Triangle a = triangle_of(l, i);
-      for (size_t j = 0; j < u.triangle_count(); ++j) {
-        const Triangle b = triangle_of(u, j);
-        if (!coincide(a, b)) continue;
-        // A solid that stands on something: nothing to be said, and what it stands on is there, for it may be of glass.
-        const bool back_to_back = a.normal().dot(b.normal()) < 0;
-        const bool upper_stands = back_to_back && is_solid(upper), lower_stands = back_to_back && is_solid(lower);
-        if (upper_stands && !lower_stands) cut_triangle(upper, j, lower);
-        else cut_triangle(lower, i, upper);
-        any |= !upper_stands && !lower_stands;
+  bool is_exact(int shape) const { return !mesh_of(shape).exact.empty(); }
+
+  /// Whether a solid's face lies in `other` without being seen: its outer side is away from who looks, or where that is
+  /// not known, from the other's. Nothing is hidden where one of them may have holes.
+  bool stands(int shape, const Triangle& face, int other, const Vec3d& other_normal, bool back_to_back_solids) {
+    const int side = side_of(shape);
+    if (side == 0 || has_alpha(shape) || has_alpha(other)) return false;
+    if (back_to_back_solids) return true;
+    if (!eye_) return face.normal().dot(other_normal) < 0;
+    return side * face.normal().dot(*eye_ - face.a) < 0;
+  }
+
+  /// Calls f(i, j) for triangles of two meshes whose boxes come near each other: a sweep along x.
+  template <class F>
+  void for_near(int lower, const std::vector<size_t>& ls, int upper, const std::vector<size_t>& us, const F& f) {
+    size_t begin = 0;
+    double widest = 0;
+    for (const size_t j : us) {
+      const Box3d box = triangle_of(mesh_of(upper), j).bounds();
+      widest = std::max(widest, box.max.x - box.min.x);
+    }
+    for (const size_t i : ls) {
+      const Box3d box = triangle_of(mesh_of(lower), i).bounds();
+      const double from = box.min.x - widest - 4 * kExactTolerance, to = box.max.x + 4 * kExactTolerance;
+      const auto start = [&](size_t k) { return triangle_of(mesh_of(upper), us[k]).bounds().min.x; };
+      while (begin < us.size() && start(begin) < from) ++begin;
+      for (size_t k = begin; k < us.size() && start(k) <= to; ++k) {
+        if (++comparisons_ > kMostComparisons) return;
+        f(i, us[k]);
       }
     }
+  }
+
+  bool compare_meshes(int lower, int upper, const Box3d& where) {
+    const std::vector<size_t> ls = triangles_in(lower, where), us = triangles_in(upper, where);
+    bool any = false;
+    for_near(lower, ls, upper, us, [&](size_t i, size_t j) {
+      const Triangle a = triangle_of(mesh_of(lower), i), b = triangle_of(mesh_of(upper), j);
+      if (!coincide(a, b, tolerance_of(a, is_exact(lower), b, is_exact(upper)))) return;
+      // A solid that stands on something: nothing to be said, and what it stands on is there, for it may be of glass.
+      const double facing = side_of(lower) * side_of(upper) * a.normal().dot(b.normal());
+      const bool upper_stands = stands(upper, b, lower, a.normal(), facing < 0);
+      const bool lower_stands = stands(lower, a, upper, b.normal(), facing < 0);
+      if (upper_stands && !lower_stands) cut_triangle(upper, j, lower, ls);
+      else cut_triangle(lower, i, upper, us);
+      any |= !upper_stands && !lower_stands;
+    });
     return any;
   }
 
   bool compare_with_mesh(int lower, int upper) {
     const SceneShape &l = shapes_[static_cast<size_t>(lower)], &u = shapes_[static_cast<size_t>(upper)];
-    const Mesh& mesh = l.mesh ? *l.mesh : *u.mesh;
-    const FlatShape flat(l.analytic ? *l.analytic : *u.analytic);
+    const int of_mesh = l.mesh ? lower : upper, other = l.mesh ? upper : lower;
+    const AnalyticShape& analytic = l.mesh ? *u.analytic : *l.analytic;
+    const FlatShape flat(analytic);
     bool any = false;
-    for (size_t i = 0; i < mesh.triangle_count(); ++i) {
-      const Triangle t = triangle_of(mesh, i);
+    for (size_t i = 0; i < mesh_of(of_mesh).triangle_count(); ++i) {
+      const Triangle t = triangle_of(mesh_of(of_mesh), i);
       if (!flat.coincides(t)) continue;
-      any = true;
-      if (l.analytic && !has_alpha_[static_cast<size_t>(upper)]) cut(lower).add_everywhere(t);
+      const bool on_it = stands(of_mesh, t, other, flat.normal(), false);
+      any |= !on_it;
+      if (on_it ? !has_alpha(other) : l.mesh && !has_alpha(other)) cut(of_mesh).add(analytic);
+      else if (l.analytic && !has_alpha(of_mesh)) cut(lower).add_everywhere(t);
     }
     return any;
   }
 
-  bool is_solid(int shape) {
-    const auto [known, is_new] = solids_.try_emplace(shape, false);
-    if (is_new) known->second = is_closed(*shapes_[static_cast<size_t>(shape)].mesh);
+  int side_of(int shape) {
+    const auto [known, is_new] = sides_.try_emplace(shape, 0);
+    if (is_new) known->second = solid_side(mesh_of(shape));
     return known->second;
   }
 
   std::span<const SceneShape> shapes_;
   const std::vector<bool>& has_alpha_;
+  const std::optional<Vec3d> eye_;
   std::map<int, std::unique_ptr<UnderOthers>> cuts_;
-  std::map<int, bool> solids_;
+  std::map<int, int> sides_;
   size_t comparisons_ = 0;
   std::set<std::tuple<int, size_t, int>> done_;  ///< Triangles cut under a shape.
   Coincidences found_;
@@ -323,17 +443,31 @@ class BothTests final : public AlphaTest {
 
 }  // namespace
 
-Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha) {
+Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha,
+                               const std::optional<Vec3d>& eye) {
   std::vector<Candidate> candidates;
   for (size_t i = 0; i < shapes.size(); ++i) {
-    const SceneShape& shape = shapes[i];
-    if (shape.analytic || (shape.mesh && shape.mesh->triangle_count() <= kMostTriangles)) {
-      candidates.push_back({static_cast<int>(i), bounds_of(shape)});
-    }
+    if (shapes[i].analytic || shapes[i].mesh) candidates.push_back({static_cast<int>(i), {}});
   }
-  Finder finder(shapes, has_alpha);
-  if (candidates.size() <= kMostShapes) {
-    for_neighbours(candidates, [&](int lower, int upper) { finder.compare(lower, upper); });
+  Finder finder(shapes, has_alpha, eye);
+  if (candidates.size() > kMostShapes || candidates.size() < 2) return finder.take();
+  tbb::parallel_for(size_t{0}, candidates.size(), [&](size_t i) {
+    candidates[i].bounds = bounds_of(shapes[static_cast<size_t>(candidates[i].shape)]);
+  });
+  const auto is_large = [&](const Candidate& c) {
+    const Mesh* mesh = shapes[static_cast<size_t>(c.shape)].mesh;
+    return mesh && mesh->triangle_count() > kSmallMesh;
+  };
+  for (const bool large : {false, true}) {
+    for_neighbours(candidates, [&](const Candidate& a, const Candidate& b) {
+      if ((is_large(a) || is_large(b)) != large) return;
+      Box3d shared = a.bounds;
+      for (int c = 0; c < 3; ++c) {
+        shared.min[c] = std::max(a.bounds.min[c], b.bounds.min[c]);
+        shared.max[c] = std::min(a.bounds.max[c], b.bounds.max[c]);
+      }
+      finder.compare(std::min(a.shape, b.shape), std::max(a.shape, b.shape), shared);
+    });
   }
   return finder.take();
 }

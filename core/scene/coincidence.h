@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,11 +22,13 @@ struct Coincidences {
   std::vector<std::pair<int, std::unique_ptr<AlphaTest>>> cuts;  ///< By shape, in rising order.
 };
 
-/// Looks at the shapes of one group: analytic ones and meshes of at most 256 triangles, whose surfaces coincide to within
-/// what the group's floats can tell. Beyond 20,000 such shapes none is looked at, and no more after ten million
-/// comparisons of triangles. The upper shape is the one that is there, unless it is a solid that stands on the lower one:
-/// its face is then cut away, and no pair told. A shape for which `has_alpha` is true may have holes: it cuts nothing away.
-Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha);
+/// Looks at the meshes and analytic shapes of one group, whose surfaces coincide to within what the group's floats can
+/// tell. Beyond 20,000 shapes none is looked at, and no more after ten million comparisons of triangles. The upper shape
+/// is the one that is there, unless the lower one hides it: a solid that stands on something has its face cut away, and no
+/// pair is told. Who looks from `eye` does not see that face; without one a solid stands on what faces it. A shape for
+/// which `has_alpha` is true may have holes: it cuts nothing away, and hides nothing.
+Coincidences find_coincidences(std::span<const SceneShape> shapes, const std::vector<bool>& has_alpha,
+                               const std::optional<Vec3d>& eye);
 
 /// A surface that is there where neither test cuts it; both may be null, and so may the result.
 std::unique_ptr<AlphaTest> both(std::unique_ptr<AlphaTest> a, std::unique_ptr<AlphaTest> b);
