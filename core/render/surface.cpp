@@ -45,7 +45,7 @@ struct TriangleLanes {
   Corners p, n, s;
   float *u0, *v0, *u1, *v1, *u2, *v2;
   float* unit;  ///< The length of a world unit.
-  bool any_normals = false, any_tangents = false;
+  bool any_normals = false, any_tangents = false, any_exact = false;
 
   /// Texture coordinates of triangles of one mesh, as Corners::gather(); pbrt's where the mesh has none.
   void gather_uvs(const Mesh& mesh, const uint32_t* prim, int first, int count) const {
@@ -81,6 +81,7 @@ TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int off
     std::fill_n(t.unit + first, n, shape.unit);
     t.any_normals |= !mesh.normals.empty();
     t.any_tangents |= !mesh.tangents.empty();
+    t.any_exact |= !mesh.exact.empty();
   });
   const auto gather_vectors = [&](Corners& to, std::vector<float> Mesh::*vectors) {
     to = Corners(arena, count);
@@ -213,14 +214,6 @@ Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   return interpolate_keys(scene.keys_of(instance), h.time_of(i)).inverse();
 }
 
-/// Whether any of the lanes is on a huge triangle.
-bool any_exact(const Scene& scene, const SurfaceHits& h, int first, int n) {
-  for (int i = first; i < first + n; ++i) {
-    if (!scene.shapes[static_cast<size_t>(h.shape[i])].mesh->exact.empty()) return true;
-  }
-  return false;
-}
-
 /// Partial derivatives from the corners' texture coordinates, as triangle_geometry() has them; false where they span no
 /// area.
 bool exact_partials(const ExactTriangle& t, const TriangleLanes& lanes, int i, Vec3d& dpdu, Vec3d& dpdv) {
@@ -283,7 +276,7 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
   const TriangleLanes t = gather_triangles(scene, h, first, s.n, arena);
   const float *bu = h.u + first, *bv = h.v + first;
   triangle_geometry(t, s, g, bu, bv);
-  if (any_exact(scene, h, first, s.n)) {
+  if (t.any_exact) {
     float *exact_u = arena.floats(s.n), *exact_v = arena.floats(s.n);
     std::copy_n(bu, s.n, exact_u), std::copy_n(bv, s.n, exact_v);
     exact_geometry(scene, h, first, t, s, g, exact_u, exact_v);

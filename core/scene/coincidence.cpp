@@ -108,13 +108,16 @@ bool has_surface_at(const AnalyticShape& shape, const Vec3d& p, double tolerance
   return std::abs(t - 1) <= tolerance;
 }
 
-/// Points all over a shape, in its group's space.
-std::vector<Vec3d> points_on(const AnalyticShape& shape) {
+/// Points all over a shape, in its group's space: in the middles of 8 x 8 parts, or on the corners of 15 x 15.
+std::vector<Vec3d> points_on(const AnalyticShape& shape, bool to_the_rim = false) {
   std::vector<Vec3d> points;
-  constexpr int kSide = 8;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const double u = (i % kSide + 0.5) / kSide, v = (i / kSide + 0.5) / kSide;
-    points.push_back(transform_point(shape.object_to_scene(), shape.sample_area(u, v).p));
+  const int side = to_the_rim ? 16 : 8;
+  const auto at = [&](int i) {
+    constexpr double kBelowOne = 1 - 1e-9;
+    return to_the_rim ? kBelowOne * i / (side - 1) : (i + 0.5) / side;
+  };
+  for (int i = 0; i < side * side; ++i) {
+    points.push_back(transform_point(shape.object_to_scene(), shape.sample_area(at(i % side), at(i / side)).p));
   }
   return points;
 }
@@ -122,7 +125,7 @@ std::vector<Vec3d> points_on(const AnalyticShape& shape) {
 /// A flat analytic shape, a disk, in its group's space. What is curved can only touch a plane, and is not flat.
 class FlatShape {
  public:
-  explicit FlatShape(const AnalyticShape& shape) : shape_(shape), points_(points_on(shape)) {
+  explicit FlatShape(const AnalyticShape& shape) : shape_(shape), points_(points_on(shape, true)) {
     const SurfacePoint any = shape.surface(shape.sample_area(0.5, 0.5).p);
     const Mat4d& m = shape.object_to_scene();
     at_ = transform_point(m, any.p);
@@ -137,8 +140,8 @@ class FlatShape {
   /// Whether it shares a part of its plane with a triangle.
   bool coincides(const Triangle& t) const {
     if (off_plane(t, t.a) || off_plane(t, t.b) || off_plane(t, t.c)) return false;
-    return any_point_on(t) ||
-           std::any_of(points_.begin(), points_.end(), [&](const Vec3d& p) { return depth_inside(t, p) >= 0; });
+    return any_point_on(t) || std::any_of(points_.begin(), points_.end(),
+                                          [&](const Vec3d& p) { return depth_inside(t, p) > 2 * t.tolerance; });
   }
   Vec3d normal() const { return normal_; }
 

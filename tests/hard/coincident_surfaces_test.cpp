@@ -117,5 +117,61 @@ TEST(Hard, SolidsOnTheGround) {
   }
 }
 
+TEST(Hard, WhatIsSaidOfCoincidence) {
+  const std::string floor = quad("-20 -20 0  20 -20 0  20 20 0  -20 20 0") + "\n";
+  const auto apart = [](const std::string& shape) { return "AttributeBegin " + shape + " AttributeEnd\n"; };
+  const auto cube_of = [](const std::string& more) {
+    return "Shape \"trianglemesh\" " + more +
+           " \"integer indices\" [0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 1 2 6 1 6 5 2 3 7 2 7 6 3 0 4 3 4 7] \"point P\" "
+           "[-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0  -.5 -.5 1  .5 -.5 1  .5 .5 1  -.5 .5 1]";
+  };
+  const std::string cube = apart(cube_of(""));
+  const std::string holes = "Texture \"holes\" \"float\" \"checkerboard\" \"float tex1\" 0 \"float tex2\" 1\n";
+  const std::string disk = "Shape \"disk\" \"float radius\" 20\n";
+  const std::string decal = quad("-.2 -.2 0  .2 -.2 0  .2 .2 0  -.2 .2 0") + "\n";
+  const std::string fine =
+      "Shape \"loopsubdiv\" \"integer levels\" 5 \"integer indices\" [0 1 2 0 2 3] \"point P\" "
+      "[-2 -2 0  2 -2 0  2 2 0  -2 2 0]\n";
+  struct Case {
+    const char* name;
+    size_t warnings;
+    std::string shapes;
+  };
+  // Seen from above.
+  const Case cases[] = {
+      {"a cube on a floor", 0, floor + cube},
+      {"a floor under a cube", 0, cube + floor},
+      {"a cube on a floor that faces down", 0, apart("Scale 1 1 -1 " + floor) + cube},
+      {"a cube that faces inward", 0, floor + apart("ReverseOrientation Scale -1 1 1 " + cube_of(""))},
+      {"a cube on a disk", 0, disk + cube},
+      {"a disk under a cube", 0, cube + disk},
+      {"cubes side by side", 0, cube + apart("Translate 1 .1 0 " + cube_of(""))},
+      {"quads that share an edge", 0, floor + apart("Translate 40 0 0 " + floor)},
+      {"a small square turned in a large one", 1, apart("Rotate 135 0 0 1 Scale .05 .05 1 " + floor) + floor},
+      {"the same, facing down", 1, apart("Rotate 135 0 0 1 Scale -.05 .05 1 " + floor) + floor},
+      {"squares that overlap", 1, floor + apart("Translate 39.9 39.8 0 " + floor)},
+      {"a cube with holes on a floor", 1, holes + floor + apart(cube_of("\"texture alpha\" \"holes\""))},
+      {"a cube on a floor with holes", 1,
+       holes +
+           "Shape \"trianglemesh\" \"texture alpha\" \"holes\" \"integer indices\" [0 1 2] \"point P\" [-20 -20 0  20 "
+           "-20 0  0 20 0]\n" +
+           cube},
+      {"a cube sunk in a floor", 1, floor + apart("Translate 0 0 -1 " + cube_of(""))},
+      {"a picture on a cube", 1, cube + apart("Translate 0 0 1 " + decal)},
+      {"a picture that faces the cube", 1, apart("Translate 0 0 1 Scale 1 -1 1 " + decal) + cube},
+      {"a square in a fine mesh", 1, fine + apart("Rotate 20 0 0 1 " + decal)},
+      {"equal spheres", 1, "Shape \"sphere\"\n" + apart("Rotate 30 1 1 0 Shape \"sphere\" \"float zmax\" .5")},
+      {"a disk and a floor that just overlap", 1, disk + apart("Translate 39 0 0 " + floor)},
+      {"in an object", 1,
+       "ObjectBegin \"o\"\n" + floor + apart("Rotate 20 0 0 1 " + decal) + "ObjectEnd\nObjectInstance \"o\"\n"},
+  };
+  for (const Case& c : cases) {
+    const Rendered picture = picture_of(world(c.shapes));
+    const auto& said = picture.warnings.all();
+    EXPECT_EQ(said.size(), c.warnings) << c.name;
+    for (const Diagnostic& d : said) EXPECT_TRUE(d.where.known() && d.other.known()) << c.name << ": " << d.message;
+  }
+}
+
 }  // namespace
 }  // namespace whit
