@@ -13,6 +13,30 @@
 #include "core/plugin/shape.h"
 
 namespace whit {
+
+/// An integer that may be written as a float, which pbrt-v3 truncates; the integer is taken where both are given.
+struct SplitDepth {
+  int value = 0;
+  bool is_integer = false;
+};
+
+template <>
+struct detail::Binding<SplitDepth> {
+  static std::vector<ParamType> accepts() { return {ParamType::Integer, ParamType::Float}; }
+  static std::string to_text(const SplitDepth& depth) { return std::to_string(depth.value); }
+  static bool read(const Parameter& p, const BindContext& ctx, const Range& range, SplitDepth& out) {
+    if (p.type == ParamType::Integer) {
+      // Only one value is a value, here and there.
+      out.is_integer = p.integers().size() == 1;
+      return Binding<int>::read(p, ctx, range, out.value);
+    }
+    auto number = static_cast<float>(out.value);
+    if (!Binding<float>::read(p, ctx, range, number)) return false;
+    if (!out.is_integer) out.value = static_cast<int>(std::clamp(number, -1e9f, 1e9f));
+    return true;
+  }
+};
+
 namespace {
 
 using Bezier = std::array<Vec3d, 4>;
@@ -57,11 +81,12 @@ struct Curve final : CurveShape {
   NormalList N;
   float width;
   std::optional<float> width0, width1;
-  int degree, splitdepth;
+  int degree;
+  SplitDepth splitdepth;
   Choice type, basis;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (!P.given) return diagnostics.error(statement, "curve has no \"P\"");
+    if (P.size() == 0) return diagnostics.warning(statement, "curve has no \"P\"", "it is left out");
     const int n = static_cast<int>(P.size() / 3);
     const bool fits = is_bspline() ? n >= degree + 1 : n >= degree + 1 && (n - 1) % degree == 0;
     if (!fits) {
@@ -74,9 +99,10 @@ struct Curve final : CurveShape {
   }
 
   bool build_curves(const PrepareContext&, CurveData& out) override {
+    if (P.size() == 0) return true;
     out.kind = kind();
     // 32 pieces bound any curve well; more only cost memory.
-    out.split_depth = std::clamp(splitdepth, 0, 5);
+    out.split_depth = std::clamp(splitdepth.value, 0, 5);
     const size_t n = segments();
     for (size_t s = 0; s < n; ++s) {
       const Bezier b = segment(s);
@@ -151,7 +177,7 @@ const Register<Curve> curve{
     param(&Curve::width0, "width0", Unit::Length, "Width at the start; width by default.", kNonNegative),
     param(&Curve::width1, "width1", Unit::Length, "Width at the end; width by default.", kNonNegative),
     param(&Curve::N, "N", Unit::None, "Normals of a ribbon, one at each end of every segment.", kCoordinates),
-    param(&Curve::splitdepth, "splitdepth", 3, Unit::None,
+    param(&Curve::splitdepth, "splitdepth", SplitDepth{3}, Unit::None,
           "Segments are bounded in 2^splitdepth pieces, at most 32: faster for long curves, at the cost of memory.")};
 
 }  // namespace

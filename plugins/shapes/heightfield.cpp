@@ -13,6 +13,7 @@ struct Heightfield final : MeshShape {
   FloatList Pz;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (is_empty()) return diagnostics.warning(statement, "heightfield has no cells", "it is left out");
     if (nu < 2) diagnostics.error(statement, fmt::format("heightfield needs \"nu\" of at least 2, not {}", nu));
     if (nv < 2) diagnostics.error(statement, fmt::format("heightfield needs \"nv\" of at least 2, not {}", nv));
     if (nu < 2 || nv < 2) return;
@@ -27,6 +28,7 @@ struct Heightfield final : MeshShape {
   }
 
   bool build_mesh(const PrepareContext&, MeshData& out) override {
+    if (is_empty()) return true;
     const auto columns = static_cast<uint32_t>(nu), rows = static_cast<uint32_t>(nv);
     out.owned_positions.reserve(3 * Pz.size());
     out.uvs.reserve(2 * Pz.size());
@@ -46,6 +48,10 @@ struct Heightfield final : MeshShape {
     }
     return true;
   }
+
+ private:
+  /// True where the heights are as many as they should be, but make no cell.
+  bool is_empty() const { return (nu < 2 || nv < 2) && Pz.size() == static_cast<size_t>(nu) * static_cast<size_t>(nv); }
 };
 
 const Register<Heightfield> heightfield{

@@ -187,9 +187,10 @@ struct LoopSubdivision final : MeshShape {
   Point3List P;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (indices.size() == 0) diagnostics.error(statement, "loopsubdiv has no \"indices\"");
-    if (P.size() == 0) diagnostics.error(statement, "loopsubdiv has no \"P\"");
-    if (indices.size() == 0 || P.size() == 0) return;
+    if (is_empty()) {
+      const char* lacks = indices.size() + P.size() == 0 ? "triangles" : P.size() == 0 ? "\"P\"" : "\"indices\"";
+      return diagnostics.warning(statement, fmt::format("loopsubdiv has no {}", lacks), "it is left out");
+    }
     check_indices(diagnostics);
     const double triangles = static_cast<double>(indices.size() / 3) * std::pow(4.0, level_count());
     if (triangles > kMostTriangles) {
@@ -199,6 +200,7 @@ struct LoopSubdivision final : MeshShape {
   }
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
+    if (is_empty()) return true;
     SubdivisionMesh mesh = base_mesh(ctx);
     for (int level = 0; level < level_count(); ++level) mesh = mesh.refined();
     mesh.p = mesh.limit();
@@ -225,6 +227,7 @@ struct LoopSubdivision final : MeshShape {
  private:
   static constexpr double kMostTriangles = 3e8;
 
+  bool is_empty() const { return indices.size() == 0 || P.size() == 0; }
   int level_count() const { return levels < 0 ? nlevels : levels; }
 
   void check_indices(Diagnostics& diagnostics) const {

@@ -73,12 +73,14 @@ struct Nurbs final : MeshShape {
   Point3List P;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
+    if (is_empty()) return diagnostics.warning(statement, "nurbs has no control points", "it is left out");
     const bool u_ok = check_axis(diagnostics, statement, 'u', nu, uorder, uknots, u0, u1, u_);
     const bool v_ok = check_axis(diagnostics, statement, 'v', nv, vorder, vknots, v0, v1, v_);
     if (u_ok && v_ok) check_points(diagnostics, statement);
   }
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
+    if (is_empty()) return true;
     for (int j = 0; j < kDice; ++j) {
       for (int i = 0; i < kDice; ++i) {
         const double u = u_.at(i / (kDice - 1.0)), v = v_.at(j / (kDice - 1.0));
@@ -104,6 +106,7 @@ struct Nurbs final : MeshShape {
  private:
   static constexpr int kDice = 30;
 
+  bool is_empty() const { return nu == 0 && nv == 0 && P.size() == 0 && Pw.size() == 0; }
   Vec4d control(int i, int j) const {
     const size_t k = static_cast<size_t>(j) * static_cast<size_t>(nu) + static_cast<size_t>(i);
     if (P.given) return {P.values[3 * k], P.values[3 * k + 1], P.values[3 * k + 2], 1};

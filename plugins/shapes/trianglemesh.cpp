@@ -7,6 +7,23 @@
 #include "core/plugin/shape.h"
 
 namespace whit {
+
+/// Pairs of surface parameters, which pbrt-v3 takes as point2 or as float; point2 first, whatever the order.
+struct SurfaceParameters : UvList {
+  bool as_points = false;
+};
+
+template <>
+struct detail::Binding<SurfaceParameters> {
+  static std::vector<ParamType> accepts() { return Binding<UvList>::accepts(); }
+  static std::string to_text(const SurfaceParameters&) { return {}; }
+  static bool read(const Parameter& p, const BindContext& ctx, const Range& range, SurfaceParameters& out) {
+    if (out.as_points) return true;
+    out.as_points = p.type == ParamType::Point2;
+    return Binding<UvList>::read(p, ctx, range, out);
+  }
+};
+
 namespace {
 
 std::vector<float> to_floats(std::span<const double> values) { return {values.begin(), values.end()}; }
@@ -16,12 +33,13 @@ struct TriangleMesh final : MeshShape {
   Point3List P;
   NormalList N;
   Vector3List S;
-  UvList uv, st;
+  SurfaceParameters uv, st;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (indices.size() == 0) diagnostics.error(statement, "trianglemesh has no \"indices\"");
-    if (P.size() == 0) diagnostics.error(statement, "trianglemesh has no \"P\"");
-    if (indices.size() == 0 || P.size() == 0) return;
+    if (is_empty()) {
+      const char* lacks = indices.size() + P.size() == 0 ? "triangles" : P.size() == 0 ? "\"P\"" : "\"indices\"";
+      return diagnostics.warning(statement, fmt::format("trianglemesh has no {}", lacks), "it is left out");
+    }
     check_indices(diagnostics);
     check_per_vertex(diagnostics, N, "N", "normals");
     check_per_vertex(diagnostics, S, "S", "tangents");
@@ -29,6 +47,7 @@ struct TriangleMesh final : MeshShape {
   }
 
   bool build_mesh(const PrepareContext&, MeshData& out) override {
+    if (is_empty()) return true;
     out.positions = P.values;
     out.indices.assign(indices.values.begin(), indices.values.end());
     out.normals = to_floats(N.values);
@@ -39,8 +58,10 @@ struct TriangleMesh final : MeshShape {
   }
 
  private:
+  bool is_empty() const { return indices.size() == 0 || P.size() == 0; }
   size_t vertex_count() const { return P.size() / 3; }
-  const UvList& surface_parameters() const { return uv.given ? uv : st; }
+  /// As pbrt-v3 looks for them: point2 uv, point2 st, float uv, float st.
+  const SurfaceParameters& surface_parameters() const { return uv.given && (uv.as_points || !st.as_points) ? uv : st; }
 
   void check_indices(Diagnostics& diagnostics) const {
     if (indices.size() % 3 != 0) {
@@ -60,8 +81,8 @@ struct TriangleMesh final : MeshShape {
                                               what, vertex_count()));
   }
 
-  void check_uvs(Diagnostics& diagnostics, const UvList& list) const {
-    const char* name = uv.given ? "uv" : "st";
+  void check_uvs(Diagnostics& diagnostics, const SurfaceParameters& list) const {
+    const char* name = &list == &uv ? "uv" : "st";
     if (list.size() < 2 * vertex_count()) {
       diagnostics.error(list.where, fmt::format("\"{}\" has {} numbers, but {} vertices need {}", name, list.size(),
                                                 vertex_count(), 2 * vertex_count()));
@@ -83,7 +104,8 @@ const Register<TriangleMesh> trianglemesh{
     param(&TriangleMesh::N, "N", Unit::None, "Shading normals, one per vertex.", kCoordinates),
     param(&TriangleMesh::S, "S", Unit::None, "Shading tangents, one per vertex.", kCoordinates),
     param(&TriangleMesh::uv, "uv", Unit::None, "Surface parameters, one pair per vertex.", kCoordinates),
-    param(&TriangleMesh::st, "st", Unit::None, "Another name of uv, used when uv is absent.", kCoordinates),
+    param(&TriangleMesh::st, "st", Unit::None,
+          "Another name of uv, used when uv is absent, or is of floats and this of points.", kCoordinates),
     alpha_param(),
     shadowalpha_param()};
 

@@ -90,6 +90,24 @@ TEST(Curve, SplitDepthIsPbrtsWithinReason) {
   }
 }
 
+TEST(Curve, SplitDepthMayBeAFloat) {
+  // pbrt-v3 truncates it, and takes the integer where both are given. A parameter of two values is none.
+  const auto depth = [](std::vector<Parameter> given) {
+    ParameterList list{points("P", kPoints)};
+    list.insert(list.end(), given.begin(), given.end());
+    Made made("curve", list);
+    CurveData c;
+    EXPECT_TRUE(made.ok() && made.build(c)) << made.said();
+    return c.split_depth;
+  };
+  EXPECT_EQ(depth({floats("splitdepth", {1})}), 1);
+  EXPECT_EQ(depth({floats("splitdepth", {2.9})}), 2);
+  EXPECT_EQ(depth({floats("splitdepth", {1e30})}), 5);
+  EXPECT_EQ(depth({floats("splitdepth", {1}), integers("splitdepth", {4})}), 4);
+  EXPECT_EQ(depth({integers("splitdepth", {4}), floats("splitdepth", {1})}), 4);
+  EXPECT_EQ(depth({integers("splitdepth", {4, 4}), floats("splitdepth", {1})}), 1);
+}
+
 Parameter normals(std::vector<double> v) { return numbers(ParamType::Normal3, "N", std::move(v)); }
 
 TEST(Curve, NormalsOfARibbonTurnEvenly) {
@@ -120,7 +138,6 @@ TEST(Curve, MistakesAreErrors) {
     EXPECT_TRUE(made.says(what)) << made.said();
   };
   const std::vector<double> three(kPoints.begin(), kPoints.begin() + 9), five(kPoints.begin(), kPoints.begin() + 15);
-  refused({}, "no \"P\"");
   refused({points("P", three)}, "number of control points does not fit: degree 3 bezier needs 4 + n * 3, not 3");
   refused({points("P", five)}, "not 5");
   refused({points("P", three), text("basis", "bspline")}, "needs 4 or more, not 3");
