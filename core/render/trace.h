@@ -19,7 +19,8 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
 /// light's colour is outside of Rec.709. -1e-5 is pbrt's.
 inline bool is_usable_sample(const RGB& l) {
   const float size = std::abs(l.x) + std::abs(l.y) + std::abs(l.z);
-  return (luminance(l) >= -1e-5f) & (size <= std::numeric_limits<float>::max());
+  const bool not_negative = luminance(l) >= -1e-5f, finite = size <= std::numeric_limits<float>::max();
+  return not_negative & finite;
 }
 
 /// Traces the chunk's rays until none is left; worker.chunk.radiance holds the result.
