@@ -137,14 +137,15 @@ MeshData take_huge(MeshData& mesh, std::span<const uint32_t> huge) {
   MeshData taken;
   std::unordered_map<uint32_t, uint32_t> number;  // Of the vertices that are taken.
   const auto take = [&](uint32_t from) {
-    const auto [known, is_new] = number.try_emplace(from, static_cast<uint32_t>(number.size()));
+    const auto found = number.try_emplace(from, static_cast<uint32_t>(number.size()));
+    const bool is_new = found.second;  // Clang 14 captures no structured binding.
     const auto copy = [&](auto& to, const auto& values, size_t count) {
       if (is_new && !values.empty())
         to.insert(to.end(), values.begin() + from * count, values.begin() + (from + 1) * count);
     };
     copy(taken.owned_positions, mesh.positions, 3), copy(taken.normals, mesh.normals, 3);
     copy(taken.tangents, mesh.tangents, 3), copy(taken.uvs, mesh.uvs, 2);
-    return known->second;
+    return found.first->second;
   };
   size_t left = 0, next = 0;
   for (size_t t = 0; t < mesh.indices.size() / 3; ++t) {
