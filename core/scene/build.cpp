@@ -369,8 +369,10 @@ class Builder {
       for (const LoadedShape& loaded : group.shapes) {
         BakedShape shape = std::move(*next++);
         std::unique_ptr<Mesh> huge = std::move(shape.huge);
-        if (!huge || !shape.mesh->indices.empty()) add_shape(group, loaded, std::move(shape));
-        if (huge) add_shape(group, loaded, {std::move(huge), nullptr, nullptr, 0});
+        const bool only_huge = huge && shape.mesh->indices.empty();
+        const size_t degenerate = only_huge ? shape.degenerate : 0;
+        if (!only_huge) add_shape(group, loaded, std::move(shape));
+        if (huge) add_shape(group, loaded, {std::move(huge), nullptr, nullptr, degenerate});
       }
       attach_shapes(group, first);
       group.shapes.resize(1);  // The data is baked; what is left identifies a moving shape.

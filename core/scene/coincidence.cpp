@@ -339,15 +339,19 @@ class Finder {
   const Mesh& mesh_of(int shape) const { return *shapes_[static_cast<size_t>(shape)].mesh; }
   bool has_alpha(int shape) const { return has_alpha_[static_cast<size_t>(shape)]; }
 
-  /// Cuts a triangle of a shape away where another shape lies in it, also between the triangles of that.
-  void cut_triangle(int shape, size_t prim, int other, const std::vector<size_t>& others) {
-    if (has_alpha(other) || !done_.insert({shape, prim, other}).second) return;
-    const Triangle a = triangle_of(mesh_of(shape), prim);
-    for (const size_t j : others) {
-      const Triangle b = triangle_of(mesh_of(other), j);
+  /// The triangles of one mesh that another mesh cuts away where it lies in them.
+  using Prims = std::set<size_t>;
+
+  /// Cuts triangles of a shape away where another shape lies in them, also between the triangles of that.
+  void cut_triangles(int shape, const std::vector<size_t>& own, const Prims& prims, int other,
+                     const std::vector<size_t>& others) {
+    if (prims.empty() || has_alpha(other)) return;
+    for_near(shape, own, other, others, [&](size_t i, size_t j) {
+      if (prims.count(i) == 0) return;
+      const Triangle a = triangle_of(mesh_of(shape), i), b = triangle_of(mesh_of(other), j);
       const double tolerance = tolerance_of(a, is_exact(shape), b, is_exact(other));
-      if (touch(a, b, tolerance)) cut(shape).add(prim, b, tolerance);
-    }
+      if (touch(a, b, tolerance)) cut(shape).add(i, b, tolerance);
+    });
   }
 
   bool is_exact(int shape) const { return !mesh_of(shape).exact.empty(); }
@@ -386,6 +390,7 @@ class Finder {
   bool compare_meshes(int lower, int upper, const Box3d& where) {
     const std::vector<size_t> ls = triangles_in(lower, where), us = triangles_in(upper, where);
     bool any = false;
+    Prims of_lower, of_upper;
     for_near(lower, ls, upper, us, [&](size_t i, size_t j) {
       const Triangle a = triangle_of(mesh_of(lower), i), b = triangle_of(mesh_of(upper), j);
       if (!coincide(a, b, tolerance_of(a, is_exact(lower), b, is_exact(upper)))) return;
@@ -393,10 +398,12 @@ class Finder {
       const double facing = side_of(lower) * side_of(upper) * a.normal().dot(b.normal());
       const bool upper_stands = stands(upper, b, lower, a.normal(), facing < 0);
       const bool lower_stands = stands(lower, a, upper, b.normal(), facing < 0);
-      if (upper_stands && !lower_stands) cut_triangle(upper, j, lower, ls);
-      else cut_triangle(lower, i, upper, us);
+      if (upper_stands && !lower_stands) of_upper.insert(j);
+      else of_lower.insert(i);
       any |= !upper_stands && !lower_stands;
     });
+    cut_triangles(upper, us, of_upper, lower, ls);
+    cut_triangles(lower, ls, of_lower, upper, us);
     return any;
   }
 
@@ -429,7 +436,6 @@ class Finder {
   std::map<int, std::unique_ptr<UnderOthers>> cuts_;
   std::map<int, int> sides_;
   size_t comparisons_ = 0;
-  std::set<std::tuple<int, size_t, int>> done_;  ///< Triangles cut under a shape.
   Coincidences found_;
 };
 

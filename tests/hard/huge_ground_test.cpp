@@ -201,13 +201,36 @@ TEST(Hard, HugeGroundInNumbers) {
   }
 }
 
+/// A square of two units whose edges go through the centres of pixels, within eight triangles that reach far.
+std::string framed(double e) {
+  return fmt::format(
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3  0 4 1 1 4 5 1 5 2 2 5 6 2 6 3 3 6 7 3 7 0 0 7 4] "
+      "\"point P\" "
+      "[-.96875 -.96875 0  .96875 -.96875 0  .96875 .96875 0  -.96875 .96875 0  {0} {0} 0  {1} {0} 0  {1} {1} 0  {0} "
+      "{1} "
+      "0]\n",
+      -e, e);
+}
+
 TEST(Hard, HugeLampShines) {
-  // A ground that glows shows its own radiance everywhere, and no ray is lost.
+  // A ground that glows shows its own radiance everywhere, and no ray is lost: neither between huge triangles nor between
+  // huge and small ones, also where both are tilted.
   for (const double e : {1e4, 1e6, 1e8}) {
     const Rendered picture(
         view(kFrom[2],
              "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1]\nMaterial \"matte\" \"rgb Kd\" [0 0 0]\n" + quad(e), ""));
     for (int y = 40; y < 64; ++y) EXPECT_EQ(picture.pixel(32, y), RGB(3, 2, 1)) << e;
+    for (const char* tilt : {"", "Rotate 17 1 2 .5 "}) {
+      for (int from = 0; from < 2; ++from) {
+        const Rendered from_above(
+            view(kFrom[from],
+                 "AreaLightSource \"diffuse\" \"rgb L\" [3 2 1] \"bool twosided\" \"true\"\nMaterial "
+                 "\"matte\" \"rgb Kd\" [0 0 0]\n" +
+                     std::string(tilt) + framed(e),
+                 ""));
+        for (int i = 0; i < 64 * 64; ++i) EXPECT_EQ(from_above.pixel(i % 64, i / 64), RGB(3, 2, 1)) << e << tilt << i;
+      }
+    }
   }
 }
 
