@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <functional>
 
 #include "core/accel/embree.h"
 #include "core/accel/replay.h"
@@ -19,6 +20,7 @@ constexpr int kWidth = 16;
 struct GeometryUser {
   const AnalyticShape* analytic = nullptr;
   const AlphaTest* alpha = nullptr;
+  MeshView mesh{};
   CurveView curves{};
   const ExactTriangle* triangles = nullptr;
   RTCBounds bounds{};           ///< Of an analytic shape.
@@ -90,10 +92,35 @@ struct ObjectPacket {
   void intersect(const AnalyticShape& shape) { shape.intersect({n, ox, oy, oz, dx, dy, dz, t_min, t}); }
 };
 
-/// Finds each lane's nearest hit that the alpha test leaves standing, and hands it to accept(lane, t).
-template <class Accept>
+/// The shadow rays of a call, for Embree's callbacks; a ray's id is its number among them.
+struct ShadowRays {
+  RTCScene world;
+  const RayLanes& rays;
+
+  bool meets_before_end(const GeometryUser& user, const ObjectPacket& packet, int k, unsigned id, unsigned instance,
+                        float time) const;
+  bool meets_before_end(const ExactTriangle& triangle, double t, unsigned id, unsigned instance, float time) const;
+  bool meets_before_end(const GeometryUser& user, const RTCFilterFunctionNArguments* args, unsigned i) const;
+  /// Whether a curve, which faces the ray, is on its end or behind it: the distance is known to a few units of the
+  /// largest number that went into it.
+  bool is_at_end(double t, unsigned id) const {
+    const Vec3f o = rays.o[static_cast<int>(id)];
+    const double t_max = static_cast<double>(rays.t_max[id]);
+    const double largest = static_cast<double>(std::abs(o.x) + std::abs(o.y) + std::abs(o.z)) + t_max;
+    return t >= t_max - 4.8e-7 * largest;
+  }
+};
+
+/// Null when the rays of the query end at their distances.
+const ShadowRays* shadow_of(const EmbreeContext* context) {
+  return static_cast<const ShadowRays*>(static_cast<const QueryContext*>(context)->shadow);
+}
+
+/// Finds each lane's nearest hit that the alpha test and stands(packet, k) leave standing, and hands it to accept(lane,
+/// t).
+template <class Stands, class Accept>
 void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
-                    const Accept& accept) {
+                    const Stands& stands, const Accept& accept) {
   if (!reaches(rays, valid, width, user.bounds)) return;
   ObjectPacket packet(rays, valid, width, *user.analytic);
   double t_far[kWidth];
@@ -107,8 +134,8 @@ void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, u
       // distance rounds to.
       if (!(static_cast<float>(packet.t[k]) < static_cast<float>(t_far[k]))) continue;
       const int i = packet.lane[k];
-      bool cut = false;
-      if (user.alpha) {
+      bool cut = !stands(packet, k);
+      if (user.alpha && !cut) {
         const Vec3d p = transform_point(user.analytic->object_to_scene(),
                                         Vec3d(packet.ox[k], packet.oy[k], packet.oz[k]) +
                                             packet.t[k] * Vec3d(packet.dx[k], packet.dy[k], packet.dz[k]));
@@ -133,7 +160,8 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
   const unsigned width = args->N;
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
-  trace_analytic(user, rays, args->valid, width, false, [&](unsigned i, double t) {
+  const auto always = [](const ObjectPacket&, int) { return true; };
+  trace_analytic(user, rays, args->valid, width, false, always, [&](unsigned i, double t) {
     RTCRayN_tfar(rays, width, i) = static_cast<float>(t);
     RTCHitN_u(hits, width, i) = RTCHitN_v(hits, width, i) = 0;
     RTCHitN_primID(hits, width, i) = args->primID;
@@ -144,8 +172,14 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
-  if (static_cast<int>(RTCRayN_id(args->ray, args->N, 0)) == user.unshaded_by_itself) return;
-  trace_analytic(user, args->ray, args->valid, args->N, true, [&](unsigned i, double) {
+  const ShadowRays* shadow = shadow_of(args->context);
+  if (shadow && shadow->rays.end->unshaded_by == user.unshaded_by_itself) return;
+  const auto stands = [&](const ObjectPacket& packet, int k) {
+    const auto lane = static_cast<unsigned>(packet.lane[k]);
+    return !shadow || shadow->meets_before_end(user, packet, k, RTCRayN_id(args->ray, args->N, lane),
+                                               args->context->instID[0], RTCRayN_time(args->ray, args->N, lane));
+  };
+  trace_analytic(user, args->ray, args->valid, args->N, true, stands, [&](unsigned i, double) {
     RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
   });
 }
@@ -195,7 +229,9 @@ void curve_intersect(const RTCIntersectFunctionNArguments* args) {
 
 void curve_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
-  trace_curve(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, const CurveHit&) {
+  const ShadowRays* shadow = shadow_of(args->context);
+  trace_curve(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, const CurveHit& hit) {
+    if (shadow && shadow->is_at_end(hit.t, RTCRayN_id(args->ray, args->N, i))) return;
     RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
   });
 }
@@ -209,11 +245,11 @@ void exact_bounds(const RTCBoundsFunctionArguments* args) {
   set_bounds(box, *args->bounds_o);
 }
 
-/// Meets a packet with a triangle in double precision and hands what the alpha test leaves standing to
+/// Meets a packet with a triangle in double precision and hands what the alpha test and stands(lane, t) leave standing to
 /// accept(lane, t, weights).
-template <class Accept>
+template <class Stands, class Accept>
 void trace_exact(const GeometryUser& user, unsigned prim, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
-                 const Accept& accept) {
+                 const Stands& stands, const Accept& accept) {
   const ExactTriangle& triangle = user.triangles[prim];
   for (unsigned i = 0; i < width; ++i) {
     if (!valid[i]) continue;
@@ -223,7 +259,7 @@ void trace_exact(const GeometryUser& user, unsigned prim, RTCRayN* rays, const i
     // As floats, for the reason given in trace_analytic().
     if (!(t > static_cast<double>(RTCRayN_tnear(rays, width, i)) &&
           static_cast<float>(t) < RTCRayN_tfar(rays, width, i)) ||
-        !is_inside(triangle, o, d, t)) {
+        !is_inside(triangle, o, d, t) || !stands(i, t)) {
       continue;
     }
     const Vec3d p = o + t * d;
@@ -238,19 +274,26 @@ void exact_intersect(const RTCIntersectFunctionNArguments* args) {
   const unsigned width = args->N;
   RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, width);
   RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, width);
-  trace_exact(user, args->primID, rays, args->valid, width, false, [&](unsigned i, float t, const Vec2f& weights) {
-    RTCRayN_tfar(rays, width, i) = t;
-    RTCHitN_u(hits, width, i) = weights.x;
-    RTCHitN_v(hits, width, i) = weights.y;
-    RTCHitN_primID(hits, width, i) = args->primID;
-    RTCHitN_geomID(hits, width, i) = args->geomID;
-    RTCHitN_instID(hits, width, i, 0) = args->context->instID[0];
-  });
+  const auto always = [](unsigned, double) { return true; };
+  trace_exact(user, args->primID, rays, args->valid, width, false, always,
+              [&](unsigned i, float t, const Vec2f& weights) {
+                RTCRayN_tfar(rays, width, i) = t;
+                RTCHitN_u(hits, width, i) = weights.x;
+                RTCHitN_v(hits, width, i) = weights.y;
+                RTCHitN_primID(hits, width, i) = args->primID;
+                RTCHitN_geomID(hits, width, i) = args->geomID;
+                RTCHitN_instID(hits, width, i, 0) = args->context->instID[0];
+              });
 }
 
 void exact_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
-  trace_exact(user, args->primID, args->ray, args->valid, args->N, true, [&](unsigned i, float, const Vec2f&) {
+  const ShadowRays* shadow = shadow_of(args->context);
+  const auto stands = [&](unsigned i, double t) {
+    return !shadow || shadow->meets_before_end(user.triangles[args->primID], t, RTCRayN_id(args->ray, args->N, i),
+                                               args->context->instID[0], RTCRayN_time(args->ray, args->N, i));
+  };
+  trace_exact(user, args->primID, args->ray, args->valid, args->N, true, stands, [&](unsigned i, float, const Vec2f&) {
     RTCRayN_tfar(args->ray, args->N, i) = -std::numeric_limits<float>::infinity();
   });
 }
@@ -270,6 +313,109 @@ void alpha_filter(const RTCFilterFunctionNArguments* args) {
                         RTCHitN_v(args->hit, width, i), p, kShadow)) {
       args->valid[i] = 0;
     }
+  }
+}
+
+/// Column-major, as Embree writes it.
+Mat4d instance_to_render(RTCScene world, unsigned instance, float time) {
+  float m[16];
+  rtcGetGeometryTransform(rtcGetGeometry(world, instance), time, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, m);
+  Mat4d out;
+  for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = static_cast<double>(m[i]);
+  return out;
+}
+
+constexpr double kRounding = 0x1p-24;  ///< Half a unit in the last place of 1, in float.
+
+Vec3d absolute(const Vec3d& v) { return {std::abs(v.x), std::abs(v.y), std::abs(v.z)}; }
+
+/// A triangle in render space, with what rounding its vertices, and the matrix of its instance, may have moved it by.
+EndTriangle end_triangle(const MeshView& mesh, unsigned triangle, const Mat4d* to_render) {
+  Vec3d corner[3], largest(0, 0, 0), shift(0, 0, 0);
+  for (int c = 0; c < 3; ++c) {
+    const float* v = mesh.positions +
+                     3 * static_cast<size_t>(mesh.indices[3 * static_cast<size_t>(triangle) + static_cast<size_t>(c)]);
+    corner[c] = Vec3d(static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2]));
+    const Vec3d a = absolute(corner[c]);
+    largest = {std::max(largest.x, a.x), std::max(largest.y, a.y), std::max(largest.z, a.z)};
+    if (to_render) corner[c] = transform_point(*to_render, corner[c]);
+  }
+  if (!to_render) return {corner[0], corner[1], corner[2], rounding_of(largest)};
+  const Mat4d& m = *to_render;
+  for (int k = 0; k < 3; ++k) {
+    shift[k] = std::abs(m[3][k]);
+    for (int j = 0; j < 3; ++j) shift[k] += 2 * std::abs(m[j][k]) * largest[j];
+  }
+  return {corner[0], corner[1], corner[2], shift * kRounding};
+}
+
+bool ShadowRays::meets_before_end(const GeometryUser& user, const RTCFilterFunctionNArguments* args, unsigned i) const {
+  const unsigned width = args->N;
+  const Vec3f d(RTCRayN_dir_x(args->ray, width, i), RTCRayN_dir_y(args->ray, width, i),
+                RTCRayN_dir_z(args->ray, width, i));
+  const Vec3f n(RTCHitN_Ng_x(args->hit, width, i), RTCHitN_Ng_y(args->hit, width, i),
+                RTCHitN_Ng_z(args->hit, width, i));
+  const auto id = static_cast<int>(RTCRayN_id(args->ray, width, i));
+  // How far the end is behind the triangle's plane, in the space of its group, as far as floats tell.
+  const float behind = (rays.t_max[id] - RTCRayN_tfar(args->ray, width, i)) * std::abs(n.dot(d)) / n.length();
+  const float unsure = static_cast<float>(kNearEnd) * d.length();
+  if (behind > unsure) return true;
+  if (behind < -unsure) return false;
+  const unsigned instance = args->context->instID[0];
+  Mat4d placed;
+  const bool instanced = instance != RTC_INVALID_GEOMETRY_ID;
+  if (instanced) placed = instance_to_render(world, instance, RTCRayN_time(args->ray, width, i));
+  return end_triangle(user.mesh, RTCHitN_primID(args->hit, width, i), instanced ? &placed : nullptr)
+      .separates(Vec3d(rays.o[id]), end_point(rays, id), rays.end->error);
+}
+
+bool ShadowRays::meets_before_end(const ExactTriangle& triangle, double t, unsigned id, unsigned instance,
+                                  float time) const {
+  const int lane = static_cast<int>(id);
+  // As with analytic shapes, below.
+  if (t < 0.5 * static_cast<double>(rays.t_max[lane])) return true;
+  EndTriangle here{triangle.a, triangle.b, triangle.c, Vec3d(triangle.error)};
+  if (instance != RTC_INVALID_GEOMETRY_ID) {
+    const Mat4d placed = instance_to_render(world, instance, time);
+    for (Vec3d* corner : {&here.a, &here.b, &here.c}) *corner = transform_point(placed, *corner);
+  }
+  return here.separates(Vec3d(rays.o[lane]), end_point(rays, lane), rays.end->error);
+}
+
+bool ShadowRays::meets_before_end(const GeometryUser& user, const ObjectPacket& packet, int k, unsigned id,
+                                  unsigned instance, float time) const {
+  const AnalyticShape& shape = *user.analytic;
+  const int lane = static_cast<int>(id);
+  const double t = packet.t[k], t_end = static_cast<double>(rays.t_max[lane]);
+  if (rays.end->on == RayEnd::On::Nothing) return t < t_end;
+  // Only an origin as near to the surface as the end gets here with a surface that the end is on.
+  if (t < 0.5 * t_end) return true;
+  if (&shape == rays.end->analytic && std::abs(t - t_end) < 0.1 * kNearEnd) return false;
+  const Vec3d o(packet.ox[k], packet.oy[k], packet.oz[k]), d(packet.dx[k], packet.dy[k], packet.dz[k]);
+  const Box3d box = shape.object_bounds();
+  const Vec3d near = o + d * t_end, room = box.size() * 1e-3 + Vec3d(1e-3 * box.size().length());
+  if (!Box3d(box.min - room, box.max + room).intersects(near)) return t < t_end;
+  const SurfacePoint at = shape.surface(o + d * t);
+  Mat4d to_render = shape.object_to_scene();
+  ShapeHit hit{at.p, at.dpdu.cross(at.dpdv), d, shape.scene_to_object(),
+               rounding_of_size(transform_box(to_render, box))};
+  if (instance != RTC_INVALID_GEOMETRY_ID) {
+    const Mat4d placed = instance_to_render(world, instance, time);
+    to_render = to_render * placed;
+    hit.from_render = to_render.inverse();
+    hit.error =
+        rounding_of_size(transform_box(to_render, box)) +
+        2 * kRounding * (transform_point(to_render, at.p).length() + transform_point(placed, {0, 0, 0}).length());
+  }
+  return hit.hides(end_point(rays, lane), rays.end->error);
+}
+
+/// Drops the hits of triangles that the end of their ray lies on, or that are behind it.
+void end_filter(const RTCFilterFunctionNArguments* args) {
+  const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
+  const ShadowRays& shadow = *shadow_of(args->context);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] && !shadow.meets_before_end(user, args, i)) args->valid[i] = 0;
   }
 }
 
@@ -311,7 +457,7 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
     ray.time[i] = 0;
     ray.tfar[i] = std::numeric_limits<float>::infinity();
     ray.mask[i] = 0xffffffffu;
-    ray.id[i] = static_cast<unsigned>(rays.target);
+    ray.id[i] = static_cast<unsigned>(first + i);
     ray.flags[i] = 0;
   }
   if (rays.t_max) copy(ray.tfar, rays.t_max);
@@ -344,6 +490,8 @@ struct Accel::Impl {
   };
   std::vector<Group> groups;
   std::vector<int32_t> instance_group;
+  std::vector<Box3d> swept;                                 ///< Of each instance that moves: where it ever is.
+  std::vector<std::pair<int, std::vector<Affine>>> moving;  ///< Their groups and keys, until build().
   std::vector<std::unique_ptr<GeometryUser>> users;
   bool has_meshes = false, second_look = false;
   double small_scene = 0;
@@ -356,12 +504,13 @@ struct Accel::Impl {
   void intersect_packets(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
   template <int N>
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
+  void sweep_moving();
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
   RTCScene new_scene() const {
     RTCScene scene = rtcNewScene(device);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-    if (robust) rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(scene, robust ? kQueryFilter | RTC_SCENE_FLAG_ROBUST : kQueryFilter);
     return scene;
   }
   GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha, const CurveView& curves = {}) {
@@ -371,7 +520,6 @@ struct Accel::Impl {
   }
   void set_alpha(RTCGeometry geometry, const AlphaTest* alpha) {
     if (!alpha) return;
-    rtcSetGeometryUserData(geometry, new_user(nullptr, alpha));
     rtcSetGeometryIntersectFilterFunction(geometry, alpha_filter<false>);
     rtcSetGeometryOccludedFilterFunction(geometry, alpha_filter<true>);
   }
@@ -427,6 +575,9 @@ void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest
                              mesh.vertex_count);
   rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0, 3 * sizeof(uint32_t),
                              mesh.triangle_count);
+  GeometryUser* const user = impl_->new_user(nullptr, alpha);
+  user->mesh = mesh;
+  rtcSetGeometryUserData(g, user);
   impl_->set_alpha(g, alpha);
   impl_->attach(group, g, shape);
   impl_->worth += static_cast<double>(mesh.triangle_count);
@@ -484,13 +635,33 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcAttachGeometryByID(impl_->group(kWorld).scene, g, static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
+  if (keys.size() > 1) impl_->moving.emplace_back(group, keys);
   impl_->worth += kWorthOfLarge;
   return index;
+}
+
+/// Between two keys a point moves on a straight line, so the boxes at the keys hold all there is.
+void Accel::Impl::sweep_moving() {
+  for (const auto& [number, keys] : moving) {
+    RTCBounds b;
+    rtcGetSceneBounds(group(number).scene, &b);
+    const auto wide = [](float v) { return static_cast<double>(v); };
+    const Box3d box({wide(b.lower_x), wide(b.lower_y), wide(b.lower_z)},
+                    {wide(b.upper_x), wide(b.upper_y), wide(b.upper_z)});
+    Box3d& all = swept.emplace_back();
+    for (const Affine& key : keys) {
+      Mat4d m;
+      for (int i = 0; i < 12; ++i) m[i / 3][i % 3] = wide(key.m[i]);
+      all.extendBy(transform_box(m, box));
+    }
+  }
+  moving.clear();
 }
 
 std::string Accel::build() {
   for (size_t g = 1; g < impl_->groups.size(); ++g) rtcCommitScene(impl_->groups[g].scene);
   rtcCommitScene(impl_->groups[kWorld].scene);
+  impl_->sweep_moving();
   const RTCError code = rtcGetDeviceError(impl_->device);
   if (code == RTC_ERROR_NONE && impl_->error.empty()) return {};
   return fmt::format("the ray tracer could not be built: {}", impl_->error.empty() ? "unknown error" : impl_->error);
@@ -552,11 +723,19 @@ template <int N>
 void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
   EmbreeQuery query(false);
+  const ShadowRays shadow{groups[kWorld].scene, rays};
+  const bool ends = rays.end && rays.end->on != RayEnd::On::Nothing, touched = ends && rays.end->touched;
+  if (ends) query.set_shadow(&shadow, touched ? end_filter : nullptr);
+  // Farther than the end, for what decides there knows better than floats where the end is (core/accel/ray_end.h). Of a
+  // plane that nothing else is near to, t_max is in front.
+  const float stretch = touched ? 2.0f : 1.0f;
+  const float beyond = touched || (ends && rays.end->on != RayEnd::On::Plane) ? static_cast<float>(kNearEnd / 2) : 0.0f;
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   for (int first = 0; first < rays.n; first += N) {
     const int count = std::min(N, rays.n - first);
     load_packet<N>(rays, first, count, packet, valid);
+    for (int i = 0; i < N; ++i) packet.tfar[i] = packet.tfar[i] * stretch + beyond;
     query.trace(valid, groups[kWorld].scene, packet);
     for (int i = 0; i < count; ++i) blocked[first + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
   }
@@ -572,6 +751,100 @@ void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
 }
 
 void Accel::record(RayRecord* record) { impl_->record = record; }
+
+namespace {
+
+/// A query for what is near an emitter.
+struct NearEmitter {
+  const std::function<const GeometryUser*(unsigned instance, unsigned geometry)>& user_of;
+  RTCScene world;
+  const Box3d& box;
+  const std::array<Vec3d, 3>* corners;
+  bool found = false;
+
+  bool is_near(const EndTriangle& t) const;
+  static bool visit(RTCPointQueryFunctionArguments* args);
+};
+
+/// The least and the greatest distance of points from a triangle's plane.
+template <class Points>
+std::pair<double, double> distances(const EndTriangle& t, const Points& points) {
+  const Vec3d n = (t.b - t.a).cross(t.c - t.a).normalized();
+  double low = INFINITY, high = -INFINITY;
+  for (const Vec3d& p : points) low = std::min(low, n.dot(p - t.a)), high = std::max(high, n.dot(p - t.a));
+  return {low, high};
+}
+
+double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+bool NearEmitter::is_near(const EndTriangle& t) const {
+  const std::array<Vec3d, 3> own{t.a, t.b, t.c};
+  Box3d around;
+  for (const Vec3d& p : own) around.extendBy(p);
+  // The larger the triangle, the farther off Embree's plane is.
+  const double margin = kNearEnd * std::max(1.0, around.size().length() / 128);
+  if (!Box3d(around.min - Vec3d(margin), around.max + Vec3d(margin)).intersects(box)) return false;
+  const auto apart = [&](const std::pair<double, double>& d) { return d.first > margin || d.second < -margin; };
+  if (!corners) return !apart(distances(t, corners_of(box)));
+  const EndTriangle emitter{(*corners)[0], (*corners)[1], (*corners)[2], {}};
+  const auto over = distances(t, *corners), under = distances(emitter, own);
+  if (apart(over) || apart(under)) return false;
+  // In its plane, as the other half of a quad: rays that stop in front of the one have not met the other.
+  const double flat = 8 * kRounding * std::max({largest_of(box.min), largest_of(box.max), largest_of(around.size())});
+  return std::max({-over.first, over.second, -under.first, under.second}) > flat;
+}
+
+bool NearEmitter::visit(RTCPointQueryFunctionArguments* args) {
+  auto& self = *static_cast<NearEmitter*>(args->userPtr);
+  if (self.found) return false;
+  const bool instanced = args->context->instStackSize > 0;
+  const unsigned instance = instanced ? args->context->instID[0] : RTC_INVALID_GEOMETRY_ID;
+  const GeometryUser* user = self.user_of(instance, args->geomID);
+  if (!user) return false;
+  Mat4d placed;
+  if (instanced) placed = instance_to_render(self.world, instance, args->query->time);
+  if (user->triangles) {
+    const ExactTriangle& t = user->triangles[args->primID];
+    EndTriangle here{t.a, t.b, t.c, Vec3d(t.error)};
+    if (instanced) {
+      for (Vec3d* corner : {&here.a, &here.b, &here.c}) *corner = transform_point(placed, *corner);
+    }
+    self.found = self.is_near(here);
+  } else if (user->mesh.indices) {
+    self.found = self.is_near(end_triangle(user->mesh, args->primID, instanced ? &placed : nullptr));
+  } else if (user->analytic && self.corners) {
+    // Rays to a triangle stop in front of it, unless it is touched.
+    Box3d box = transform_box(user->analytic->object_to_scene(), user->analytic->object_bounds());
+    if (instanced) box = transform_box(placed, box);
+    self.found = Box3d(box.min - Vec3d(kNearEnd), box.max + Vec3d(kNearEnd)).intersects(self.box);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool Accel::is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) const {
+  const Impl::Group& world = impl_->groups[kWorld];
+  const std::function<const GeometryUser*(unsigned, unsigned)> user_of = [&](unsigned instance, unsigned geometry) {
+    RTCScene scene = world.scene;
+    if (instance != RTC_INVALID_GEOMETRY_ID) {
+      const auto index = instance - static_cast<unsigned>(world.shape_count);
+      scene = impl_->group(impl_->instance_group[index]).scene;
+    }
+    return static_cast<const GeometryUser*>(rtcGetGeometryUserData(rtcGetGeometry(scene, geometry)));
+  };
+  const Box3d room(box.min - Vec3d(kNearEnd), box.max + Vec3d(kNearEnd));
+  for (const Box3d& swept : impl_->swept) {
+    if (swept.intersects(room)) return true;
+  }
+  NearEmitter near{user_of, world.scene, box, corners};
+  const Vec3f middle(box.center());
+  RTCPointQuery query{middle.x, middle.y, middle.z, 0, static_cast<float>(box.size().length() / 2 + 20 * kNearEnd)};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(world.scene, &query, &context, NearEmitter::visit, &near);
+  return near.found;
+}
 
 bool Accel::has_instances() const { return !impl_->instance_group.empty(); }
 

@@ -4,6 +4,7 @@
 // local space of their own, placed in the world by instances.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -12,6 +13,7 @@
 
 #include "core/accel/curve.h"
 #include "core/accel/exact_triangle.h"
+#include "core/accel/ray_end.h"
 #include "core/base/vec.h"
 #include "core/batch/lanes.h"
 #include "core/plugin/shape.h"
@@ -24,8 +26,8 @@ struct RayLanes {
   Vec3Lanes o, d;
   const float* t_max = nullptr;  ///< Null: infinite.
   const float* time = nullptr;   ///< In [0,1] over the transform times; null: 0.
-  /// Shadow rays: the shape of the light they all end on, which is not in their way if it cannot shade itself.
-  int target = -1;
+  const RayEnd* end = nullptr;   ///< Shadow rays: what they all end on; null: just t_max.
+  Vec3Lanes q{};                 ///< Shadow rays to a plane: the points they end on, if known better than by t_max.
 };
 
 /// The nearest hits of n rays.
@@ -97,6 +99,10 @@ class Accel {
   void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
   /// Writes 1 where something is hit before t_max, else 0.
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
+
+  /// Whether anything is so near to an emitter that shadow rays to it need RayEnd::touched: a triangle of render space,
+  /// or whatever is in a box. `corners` is null for a box.
+  bool is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) const;
 
   /// Keeps every ray that is traced from now on (one thread only); null ends it. For core/accel/replay.h.
   void record(RayRecord* record);

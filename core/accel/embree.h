@@ -25,6 +25,18 @@ namespace whit {
   const float sum = o.x + o.y + o.z + d.x + d.y + d.z;
   return (origin <= kFar) & (direction <= kFar) & (sum == sum) & (t_far >= 0);
 }
+#if RTC_VERSION_MAJOR >= 4
+using EmbreeContext = RTCRayQueryContext;
+constexpr RTCSceneFlags kQueryFilter = RTC_SCENE_FLAG_FILTER_FUNCTION_IN_ARGUMENTS;
+#else
+using EmbreeContext = RTCIntersectContext;
+constexpr RTCSceneFlags kQueryFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
+#endif
+
+/// What Embree hands on to callbacks: its own context, and behind it ours.
+struct QueryContext : EmbreeContext {
+  const void* shadow = nullptr;  ///< Of occlusion queries that know what their rays end on: a ShadowRays of accel.cpp.
+};
 
 /// One thread's queries with one coherence hint. trace() finds nearest hits for RTCRayHit and its packets, and
 /// occlusion for RTCRay and its packets; `valid` has -1 for lanes to trace, 0 for others.
@@ -37,6 +49,14 @@ class EmbreeQuery {
     rtcInitOccludedArguments(&occluded_);
     intersect_.flags = flags;
     occluded_.flags = flags;
+    rtcInitRayQueryContext(&context_);
+    intersect_.context = occluded_.context = &context_;
+  }
+  /// Hands `shadow` to the callbacks of occlusion queries, and has hits of triangles asked of a filter unless it is null.
+  void set_shadow(const void* shadow, RTCFilterFunctionN filter) {
+    context_.shadow = shadow;
+    occluded_.filter = filter;
+    if (filter) occluded_.flags = occluded_.flags | RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER;
   }
   void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, &intersect_); }
   void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &rays, &intersect_); }
@@ -50,10 +70,15 @@ class EmbreeQuery {
  private:
   RTCIntersectArguments intersect_;
   RTCOccludedArguments occluded_;
+  QueryContext context_;
 #else
   explicit EmbreeQuery(bool coherent) {
     rtcInitIntersectContext(&context_);
     context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+  }
+  void set_shadow(const void* shadow, RTCFilterFunctionN filter) {
+    context_.shadow = shadow;
+    context_.filter = filter;
   }
   void trace(const int*, RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &context_, &ray); }
   void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &context_, &rays); }
@@ -65,7 +90,7 @@ class EmbreeQuery {
   void trace(const int* valid, RTCScene scene, RTCRay16& rays) { rtcOccluded16(valid, scene, &context_, &rays); }
 
  private:
-  RTCIntersectContext context_;
+  QueryContext context_;
 #endif
 };
 

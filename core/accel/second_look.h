@@ -57,8 +57,7 @@ class SecondLook {
     for (const float turn : {kTurn, -kTurn}) {
       if (n_ == 0) return;
       load(rays, hits, across, turn);
-      trace(RayLanes{n_, lanes(o_), lanes(d_), t_max_, time_, rays.target},
-            HitLanes{t_, shape_, prim_, instance_, u_, v_});
+      trace(RayLanes{n_, lanes(o_), lanes(d_), t_max_, time_}, HitLanes{t_, shape_, prim_, instance_, u_, v_});
       int left = 0;
       for (int i = 0; i < n_; ++i) {
         if (shape_[i] < 0) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include "core/batch/lanes.h"
 #include "core/plugin/light_reach.h"
@@ -17,9 +18,9 @@ struct LightSamples {
   const float *u = nullptr, *v = nullptr;  ///< Uniform numbers in [0,1); null for a delta light.
   // Out.
   Vec3Lanes wi;               ///< Unit direction from p towards the light.
-  float* distance = nullptr;  ///< Along wi to the sampled point, shortened so that it stays in front of the
-                              ///< light's own surface; infinity for lights at infinity.
+  float* distance = nullptr;  ///< Along wi to the sampled point; infinity for lights at infinity.
   RGBLanes radiance;          ///< Incident radiance divided by pdf; 0 where the light does not reach p.
+  Vec3Lanes q;                ///< Unless null: the sampled points. Of emitting triangles only.
 };
 
 class Light : public Plugin {
@@ -47,6 +48,8 @@ class Light : public Plugin {
   virtual float pdf(const Vec3f& /*p*/, const Vec3f& /*d*/) const { return 0; }
   /// Where sample() finds light. Asked after prepare(); the default rules nothing out.
   virtual LightReach reach() const { return {}; }
+  /// The point of render space from which all its light comes, if there is one. Asked after prepare().
+  virtual std::optional<Vec3d> position() const { return {}; }
   /// True when the light gives nothing anywhere (power 0), so that the plan drops it.
   virtual bool is_black() const { return false; }
 };

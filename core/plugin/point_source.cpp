@@ -18,7 +18,8 @@ bool PointSource::place(const PrepareContext& ctx, const Vec3d& at) {
     return false;
   }
   direction_to_light_ = AffineMap(unit.inverse());
-  position_ = Vec3f(transform_point(ctx.space.from_world(), transform_point(light_to_world, at)));
+  exact_position_ = transform_point(ctx.space.from_world(), transform_point(light_to_world, at));
+  position_ = Vec3f(exact_position_);
   to_render_ = static_cast<float>(ctx.space.scale);
   intensity_ = I * scale;
   return true;

@@ -18,6 +18,7 @@ class PointSource : public Light {
   bool is_black() const override { return whit::is_black(I * scale); }
   void sample(const LightSamples& s) const final;
   LightReach reach() const final;
+  std::optional<Vec3d> position() const final { return exact_position_; }
 
  protected:
   /// The most lanes that factor() is called with.
@@ -34,7 +35,8 @@ class PointSource : public Light {
   virtual void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const = 0;
 
  private:
-  Vec3f position_{0, 0, 0};       ///< Render space.
+  Vec3d exact_position_{0, 0, 0};  ///< Render space.
+  Vec3f position_{0, 0, 0};
   AffineMap direction_to_light_;  ///< Up to a positive factor.
   RGB intensity_{0.0f};
   float to_render_ = 1;  ///< Render lengths per world length.

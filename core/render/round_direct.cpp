@@ -11,13 +11,11 @@
 namespace whit {
 namespace {
 
-/// Where a shadow ray stops in front of an emitter whose points are off by `error` at most, measured along the ray.
+/// Where a shadow ray stops in front of an emitting triangle and of what else lies in its plane, when the ray tracer's
+/// planes are off by `error` at most.
 inline float in_front(float distance, float error, float cosine) {
   return max_of(0.0f, distance - error / max_of(std::abs(cosine), 1e-3f));
 }
-
-/// Shadow rays stop this fraction short of the light's surface: the rounding of t in the ray tracer.
-constexpr float kShadowShortening = 1 - 4e-6f;
 
 }  // namespace
 
@@ -42,6 +40,7 @@ void Round::add_direct(int number) {
     scene_.sampler().get_2d(keys_, worker_.layout.of_light(depth_, light.dimension), u, v);
     samples.u = u, samples.v = v;
   }
+  if (light.end.on == RayEnd::On::Plane && light.end.touched) samples.q = arena_.vec3(n);
   if (light.light) {
     light.light->sample(samples);
   } else {
@@ -99,18 +98,21 @@ void Round::add_unshadowed(const SceneLight& light, const LightSamples& samples,
     const Vec3f wi = samples.wi[from];
     d.set(i, wi);
     o.set(i, offset_origin(points_.p[from], points_.p_error[from], points_.ng[from], wi));
-    t_max[i] = samples.distance[from] * kShadowShortening;
+    t_max[i] = samples.distance[from];
   });
+  Vec3Lanes q;
+  if (samples.q) {
+    q = arena_.vec3(n);
+    gather(lanes, n, samples.q, q);
+  }
   float* time = nullptr;
   if (scene_.plan.live(Effect::MotionBlur)) {
     time = arena_.floats(n);
     gather(lanes, n, hits_.time, time);
   }
   uint8_t* blocked = arena_.alloc<uint8_t>(n);
-  // The back of a two-sided light is seen past its front.
-  const int target = light.light || light.two_sided ? -1 : light.shape;
   if (scene_.plan.live(Effect::Shadows)) {
-    scene_.accel->occluded({n, o, d, t_max, time, target}, blocked);
+    scene_.accel->occluded({n, o, d, t_max, time, &light.end, q}, blocked);
     worker_.statistics.shadow_rays += n;
   } else {
     std::fill_n(blocked, n, uint8_t{0});
@@ -155,7 +157,14 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
       (Vec3f(std::abs(a.x), std::abs(a.y), std::abs(a.z)) + Vec3f(std::abs(b.x), std::abs(b.y), std::abs(b.z)) +
        Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z))) *
       6e-7f;
-  const float back = std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
+  // Where more than its own plane is near, rays end on the triangle, and the ray tracer decides what is before them.
+  const float back =
+      light.end.touched ? 0.0f : std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
+  // Points in the plane of the triangle are on neither side of it; of what else is there, too, none can tell.
+  const Vec3d& e = light.end.error;
+  const Vec3f rounding(e * 2.0);  // the triangle's and the point's
+  const float off = std::abs(n.x) * rounding.x + std::abs(n.y) * rounding.y + std::abs(n.z) * rounding.z;
+  const float unsure = light.end.touched ? off : 0.0f;
   const LightSamples out = samples;
   for_lanes(samples.n, [=](int i) {
     const float root = safe_sqrt(out.u[i]);
@@ -173,11 +182,18 @@ void Round::sample_triangle(const SceneLight& light, const LightSamples& samples
     const float inverse = squared > 0 ? 1 / distance : 0.0f;
     const Vec3f wi = to * inverse;
     const float cosine = -dot(front, wi);
-    const bool lit = ((cosine > 0) | (two_sided & (cosine < 0))) & (squared > 0);
+    const bool lit =
+        ((cosine > 0) | (two_sided & (cosine < 0))) & (squared > 0) & !(std::abs(cosine) * distance < unsure);
     const float geometry = lit ? std::abs(cosine) * area / squared : 0.0f;
     out.wi.set(i, wi);
     out.distance[i] = in_front(distance, back, cosine);
     out.radiance.set(i, {radiance.x * geometry, radiance.y * geometry, radiance.z * geometry});
+  });
+  if (!out.q) return;
+  for_lanes(samples.n, [=](int i) {
+    const float root = safe_sqrt(out.u[i]);
+    const float b0 = 1 - root, b1 = out.v[i] * root;
+    out.q.set(i, a * b0 + b * b1 + c * (1 - b0 - b1));
   });
 }
 
@@ -188,12 +204,10 @@ void Round::sample_analytic(const SceneLight& light, const LightSamples& samples
   const RGB radiance = light.radiance;
   const bool two_sided = light.two_sided;
   for_lanes(samples.n, [&](int i) {
-    const float cosine = cosines[i], distance = samples.distance[i];
+    const float cosine = cosines[i];
     const bool lit = (pdfs[i] > 0) & ((cosine > 0) | (two_sided & (cosine < 0)));
     const float weight = lit ? 1 / pdfs[i] : 0.0f;
     samples.radiance.set(i, {radiance.x * weight, radiance.y * weight, radiance.z * weight});
-    const Vec3f q = samples.p[i] + samples.wi[i] * distance;
-    samples.distance[i] = in_front(distance, 6e-7f * (std::abs(q.x) + std::abs(q.y) + std::abs(q.z)), cosine);
   });
 }
 

@@ -15,6 +15,7 @@
 #include "core/scene/coincidence.h"
 #include "core/scene/emitter_reach.h"
 #include "core/scene/huge.h"
+#include "core/scene/light_end.h"
 #include "core/scene/motion.h"
 #include "core/scene/scene.h"
 
@@ -101,6 +102,9 @@ class Builder {
     const auto placed = Clock::now();
     const std::string problem = scene_->accel->build();
     if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
+    else
+      for_each(scene_->lights.size(),
+               [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
     scene_->sort_keys = static_cast<int>(keys_.size());
     scene_->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
                              seconds(placed, Clock::now())};

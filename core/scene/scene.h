@@ -86,6 +86,7 @@ struct SceneLight {
   bool is_delta = false;
   int dimension = -1;  ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
   LightReach reach;
+  RayEnd end;  ///< Of its shadow rays.
 };
 
 /// The numbers of the render that the command line may override.

@@ -19,13 +19,16 @@ class PointLight final : public Light {
   bool prepare(const PrepareContext& ctx) override {
     // pbrt-v3 adds "from" after the transform: a rotation or scale at the light does not act on it.
     const Vec3d world = light_to_world.translation() + from.value;
-    position_ = Vec3f((world - ctx.space.origin) * ctx.space.scale);
+    exact_position_ = (world - ctx.space.origin) * ctx.space.scale;
+    position_ = Vec3f(exact_position_);
     to_render_ = static_cast<float>(ctx.space.scale);
     intensity_ = I * scale;
     return true;
   }
 
   LightReach reach() const override { return reach_of_point(position_, intensity_, to_render_); }
+
+  std::optional<Vec3d> position() const override { return exact_position_; }
 
   void sample(const LightSamples& s) const override {
     const Vec3f position = position_;
@@ -46,7 +49,8 @@ class PointLight final : public Light {
   }
 
  private:
-  Vec3f position_{0, 0, 0};  ///< Render space.
+  Vec3d exact_position_{0, 0, 0};  ///< Render space.
+  Vec3f position_{0, 0, 0};
   RGB intensity_{0.0f};
   float to_render_ = 1;  ///< Render lengths per world length.
 };

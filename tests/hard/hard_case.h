@@ -19,7 +19,7 @@ class HardCase {
  public:
   /// What the page says of a case.
   struct Row {
-    int number;         ///< Of the section of the page: 1 to 17.
+    int number;         ///< Of the section of the page: 1 to 19.
     std::string what;   ///< What is tested, in a few words.
     std::string sweep;  ///< Over what, and how many.
     std::string error;  ///< What the error measures, with its unit.
