@@ -51,7 +51,22 @@ void Round::intersect() {
   if (worker_.log) worker_.log->rays(*this);
 }
 
-/// Rays that hit an interface go on from behind it, without differentials, until all have met a material or left.
+namespace {
+
+/// Rays pass through so many interfaces, and are so often moved by no more than the error of their origin, before they are
+/// taken to have stopped: nobody stacks as many shells, and a few coincident ones are passed in as many short steps.
+constexpr int kMostPasses = 10000, kMostShortSteps = 64;
+
+/// Whether a ray got ahead by less than a few units in the last place of where it is. NaN is no way ahead.
+bool is_short_step(const Vec3f& from, const Vec3f& to, const Vec3f& d) {
+  const float error = 5e-7f * std::max({std::abs(to.x), std::abs(to.y), std::abs(to.z)});
+  return !(dot(to - from, d) > error);
+}
+
+}  // namespace
+
+/// Rays that hit an interface go on from behind it, without differentials, until all have met a material or left. Those
+/// that do not get ahead are lost, which is counted.
 void Round::pass_through_interfaces() {
   const auto passes = [&](int i) {
     return ray_hits_.shape[i] >= 0 && scene_.shapes[static_cast<size_t>(ray_hits_.shape[i])].passes_through;
@@ -70,7 +85,9 @@ void Round::pass_through_interfaces() {
   };
   copy(ray_o_);
   if (ray_rx_o_) copy(ray_rx_o_), copy(ray_rx_d_), copy(ray_ry_o_), copy(ray_ry_d_);
-  while (n > 0) {
+  uint8_t* short_steps = arena_.alloc<uint8_t>(count_);
+  std::fill_n(short_steps, count_, uint8_t{0});
+  for (int pass = 1; n > 0; ++pass) {
     ArenaScope scope(arena_);
     gather_hits(lanes, n);
     const ShadingBatch surface = compute_surfaces(scene_, hits_, arena_);
@@ -78,6 +95,7 @@ void Round::pass_through_interfaces() {
     for (int i = 0; i < n; ++i) {
       const Vec3f d = hits_.d[i];
       o.set(i, offset_origin(surface.p[i], surface.p_error[i], surface.ng[i], d));
+      short_steps[lanes[i]] += is_short_step(hits_.o[i], o[i], d);
       ray_o_.set(lanes[i], o[i]);
       if (!ray_rx_o_) continue;
       ray_rx_o_.set(lanes[i], o[i]), ray_ry_o_.set(lanes[i], o[i]);
@@ -92,7 +110,13 @@ void Round::pass_through_interfaces() {
       const int lane = lanes[i];
       ray_hits_.t[lane] = next.t[i], ray_hits_.shape[lane] = next.shape[i], ray_hits_.prim[lane] = next.prim[i];
       ray_hits_.instance[lane] = next.instance[i], ray_hits_.u[lane] = next.u[i], ray_hits_.v[lane] = next.v[i];
-      if (passes(lane)) lanes[left++] = lane;
+      if (!passes(lane)) continue;
+      if (pass < kMostPasses && short_steps[lane] < kMostShortSteps) {
+        lanes[left++] = lane;
+        continue;
+      }
+      ray_hits_.t[lane] = std::numeric_limits<float>::quiet_NaN(), ray_hits_.shape[lane] = -1;  // a lost ray
+      ++worker_.statistics.stopped_rays;
     }
     n = left;
   }

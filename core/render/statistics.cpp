@@ -18,7 +18,7 @@ void RenderStatistics::add(const RenderStatistics& o) {
   surface_points += o.surface_points, footprints += o.footprints;
   time_samples += o.time_samples, lens_samples += o.lens_samples;
   texture_values += o.texture_values, alpha_tests += o.alpha_tests;
-  lights_skipped += o.lights_skipped;
+  lights_skipped += o.lights_skipped, stopped_rays += o.stopped_rays;
   for (size_t s = 0; s < kStages; ++s) stage_seconds[s] += o.stage_seconds[s];
   if (o.invalid_samples == 0) return;
   const int64_t total = invalid_samples + o.invalid_samples;

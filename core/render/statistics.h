@@ -18,6 +18,7 @@ struct RenderStatistics {
   int64_t alpha_tests = 0;     ///< Hits that alpha masks were asked about.
   int64_t lights_skipped = 0;  ///< Rounds times lights that could reach none of the round's points.
 
+  int64_t stopped_rays = 0;           ///< That did not get ahead at interfaces; their samples are invalid.
   int64_t invalid_samples = 0;        ///< NaN, infinite or of negative luminance: left out of the picture.
   Vec2i first_invalid_pixel{-1, -1};  ///< In picture order.
   uint32_t first_invalid_sample = 0;

@@ -43,6 +43,11 @@ void report_invalid(const RenderStatistics& s) {
       "pixel {},{} (--debug-pixel {},{},{} tells how it comes about)",
       s.invalid_samples, s.first_invalid_sample, s.first_invalid_pixel.x, s.first_invalid_pixel.y,
       s.first_invalid_pixel.x, s.first_invalid_pixel.y, s.first_invalid_sample));
+  if (s.stopped_rays == 0) return;
+  say(fmt::format(
+      "whit: warning: {} rays did not get ahead at surfaces of material \"none\", and their samples are among "
+      "those left out",
+      s.stopped_rays));
 }
 
 void summarise(const RenderOutcome& outcome, bool with_statistics) {
