@@ -306,7 +306,7 @@ class Drawn {
     const Vec3Lanes at{&p.x, &p.y, &p.z}, direction{&wi.x, &wi.y, &wi.z};
     if (light.light) {
       RGB radiance(0.0f);
-      light.light->sample({1, at, &u, &v, direction, &distance, {&radiance.x, &radiance.y, &radiance.z}});
+      light.light->sample({1, at, &u, &v, direction, &distance, {&radiance.x, &radiance.y, &radiance.z}, {}});
       return !is_black(radiance);
     }
     const SceneShape& shape = built_.scene->shapes[static_cast<size_t>(light.shape)];
