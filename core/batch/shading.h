@@ -1,12 +1,16 @@
 // Surface points of a batch: what materials and textures are evaluated at.
 #pragma once
 
+#include <vector>
+
 #include "core/batch/arena.h"
 #include "core/batch/lanes.h"
 #include "core/batch/stage_clock.h"
 #include "core/plugin/effect.h"
 
 namespace whit {
+
+class Plugin;
 
 /// n surface points, structure of arrays. All positions and vectors are in render space (camera-relative,
 /// scaled world space, see core/base/render_space.h); normals are unit vectors.
@@ -15,14 +19,16 @@ struct ShadingBatch {
   Arena* arena = nullptr;             ///< Scratch of the worker that shades this batch.
   StageClock* clock = nullptr;        ///< Runs while a render is timed; null otherwise.
   int64_t* texture_values = nullptr;  ///< Counts the points that textures are evaluated at; null where nobody does.
-  Vec3Lanes p;                        ///< Point on the surface.
-  Vec3Lanes p_error;                  ///< Bound on the absolute error of p, per component, >= 0.
-  Vec3Lanes wo;                       ///< Unit direction towards where the ray came from.
-  Vec3Lanes ng;                       ///< Geometric normal, oriented by pbrt's rule, see SceneShape::flips.
-  Vec3Lanes ns;                       ///< Shading normal, in the hemisphere of ng.
-  Vec3Lanes dpdu, dpdv;               ///< Shading partial derivatives of p (pbrt's shading.dpdu, shading.dpdv).
-  Vec3Lanes dndu, dndv;               ///< Shading normal derivatives; null unless differentials or bumps are live.
-  float *u = nullptr, *v = nullptr;   ///< Surface parameters.
+  /// Where not null, textures note here that they were asked for: a run over no points, see Material::lobes().
+  std::vector<const Plugin*>* textures_asked = nullptr;
+  Vec3Lanes p;                       ///< Point on the surface.
+  Vec3Lanes p_error;                 ///< Bound on the absolute error of p, per component, >= 0.
+  Vec3Lanes wo;                      ///< Unit direction towards where the ray came from.
+  Vec3Lanes ng;                      ///< Geometric normal, oriented by pbrt's rule, see SceneShape::flips.
+  Vec3Lanes ns;                      ///< Shading normal, in the hemisphere of ng.
+  Vec3Lanes dpdu, dpdv;              ///< Shading partial derivatives of p (pbrt's shading.dpdu, shading.dpdv).
+  Vec3Lanes dndu, dndv;              ///< Shading normal derivatives; null unless differentials or bumps are live.
+  float *u = nullptr, *v = nullptr;  ///< Surface parameters.
   /// Screen-space derivatives of (u, v) and p, over one sample's footprint; null when no effect needs them.
   float *dudx = nullptr, *dvdx = nullptr, *dudy = nullptr, *dvdy = nullptr;
   Vec3Lanes dpdx, dpdy;

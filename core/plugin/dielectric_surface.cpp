@@ -25,14 +25,7 @@ void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour
 
 }  // namespace
 
-EffectSet DielectricSurface::surface_effects() const {
-  EffectSet e;
-  if (may_be_smooth()) {
-    e = effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
-  }
-  if (may_be_rough() && !(is_black(Kr) && is_black(Kt))) e.add(Effect::Glossy);
-  return e;
-}
+bool DielectricSurface::is_nothing() const { return is_black(Kr) && is_black(Kt); }
 
 void DielectricSurface::add_surface(const ShadingBatch& s, const float* eta, LobeSet& out) const {
   Lobe lobe;

@@ -14,8 +14,8 @@ class DielectricSurface : public Material {
   bool remaproughness = true;
 
  protected:
-  /// The effects of the lobes.
-  EffectSet surface_effects() const;
+  /// Whether it has no lobes at all.
+  bool is_nothing() const;
 
   /// Adds the lobes; a black Kr or Kt has none. `eta` is the index inside over that outside, at each point of s.
   void add_surface(const ShadingBatch& s, const float* eta, LobeSet& out) const;

@@ -14,12 +14,13 @@ class Material : public Plugin {
   Tex<float> bump;  ///< Displacement along the normal, in scene units; constant means no bump.
 
   /// Adds the lobes of the s.n points to `out`. Arrays come from s.arena. Weights are clamped to >= 0 by clamp0.
+  /// It is also asked with no points, before prepare(): the lobes that it then adds, and the textures that it then
+  /// evaluates, are all that it may have. What else it adds later is dropped.
   virtual void lobes(const ShadingBatch& s, LobeSet& out) const = 0;
 
-  /// The lobes it may have, as effects; all of them for a material that does not say. What it does not name is dropped.
-  EffectSet effects() const override {
-    return {Effect::Diffuse, Effect::Glossy, Effect::Reflection, Effect::Refraction};
-  }
+  /// The lobes it may have, as effects.
+  EffectSet effects() const final;
+  std::vector<const Plugin*> textures_read() const final;
 
   /// True for a material that is not there (pbrt's "none"): rays pass on unchanged and nothing is shaded.
   virtual bool is_interface() const { return false; }

@@ -32,9 +32,4 @@ inline bool is_black(const Tex<RGB>& colour) {
   return colour.is_constant() && v.x <= 0 && v.y <= 0 && v.z <= 0;
 }
 
-/// The effect of a lobe unless its colour is black.
-inline EffectSet effect_unless_black(Effect lobe, const Tex<RGB>& colour) {
-  return is_black(colour) ? EffectSet{} : EffectSet{lobe};
-}
-
 }  // namespace whit

@@ -2,7 +2,7 @@
 // (files read, tables built) only when the plan keeps it.
 #pragma once
 
-#include <string_view>
+#include <vector>
 
 #include "core/base/diagnostics.h"
 #include "core/base/render_space.h"
@@ -34,8 +34,8 @@ class Plugin {
   /// The effects the bound parameters call for, but for those of the textures they are, which have their own.
   virtual EffectSet effects() const { return {}; }
 
-  /// Whether the textures given for a parameter are ever evaluated; those that are not are not read. After binding.
-  virtual bool reads(std::string_view /*parameter*/) const { return true; }
+  /// The textures of its parameters that it ever evaluates. After binding.
+  virtual std::vector<const Plugin*> textures_read() const { return {}; }
 
   /// Reads files and builds tables. Returns false after reporting an error.
   virtual bool prepare(const PrepareContext&) { return true; }

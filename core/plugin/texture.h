@@ -39,11 +39,22 @@ class Texture : public Plugin {
   /// Filtering, for a texture that does not say: one that ignores the footprint calls for nothing.
   EffectSet effects() const override { return {Effect::TextureFiltering}; }
 
-  /// Writes the texture's value at each of the s.n points to out[0 .. s.n).
+  /// Writes the texture's value at each of the s.n points to out[0 .. s.n). One that is made of textures is also asked
+  /// with no points, before prepare(): the textures that it then evaluates are all that it may read.
   virtual void evaluate(const ShadingBatch& s, const Lanes& out) const = 0;
 
   /// The value when it is the same everywhere, so that it folds away; nullopt otherwise. After binding.
   virtual std::optional<T> constant() const { return std::nullopt; }
+
+  std::vector<const Plugin*> textures_read() const final {
+    std::vector<const Plugin*> textures;
+    Arena arena;
+    ShadingBatch no_points;
+    no_points.arena = &arena;
+    no_points.textures_asked = &textures;
+    evaluate(no_points, ValueLanes<T>::alloc(arena, 0));
+    return textures;
+  }
 };
 
 /// Whether a texture of floats or colours is the same everywhere, so that what uses it holds the value.
@@ -74,7 +85,9 @@ class Tex {
   /// The value at every point of s, in s.arena.
   typename ValueLanes<T>::type operator()(const ShadingBatch& s) const {
     const auto out = ValueLanes<T>::alloc(*s.arena, s.n);
-    if (compiled_in(Effect::Textures) && texture_) {
+    if (s.textures_asked) {
+      if (texture_) s.textures_asked->push_back(texture_.get());
+    } else if (compiled_in(Effect::Textures) && texture_) {
       const StageScope stage(s.clock, Stage::Textures);
       if (s.texture_values) *s.texture_values += s.n;
       texture_->evaluate(s, out);

@@ -103,8 +103,22 @@ class Binder {
     const bool checked =
         std::none_of(diagnostics_.all().begin() + static_cast<ptrdiff_t>(before), diagnostics_.all().end(),
                      [](const Diagnostic& d) { return d.severity == Severity::Error; });
-    if (good && checked) bound.plugin = std::dynamic_pointer_cast<T>(plugin);
+    if (!good || !checked) return bound;
+    // Of these it is known what they ask for.
+    if (info.category == Material::kCategory || binding_textures_) keep_what_is_read(*plugin, bound.textures);
+    bound.plugin = std::dynamic_pointer_cast<T>(plugin);
     return bound;
+  }
+
+  /// Drops the textures that the plugin does not ask for.
+  void keep_what_is_read(const Plugin& plugin, std::vector<TextureUse>& uses) const {
+    // With textures switched off it is not seen who would ask for them.
+    if (uses.empty() || (!with_textures_ && !binding_textures_)) return;
+    const std::vector<const Plugin*> read = plugin.textures_read();
+    std::erase_if(uses, [&](const TextureUse& use) {
+      const Plugin* texture = scene_.textures[static_cast<size_t>(use.texture)].plugin.get();
+      return std::find(read.begin(), read.end(), texture) == read.end();
+    });
   }
 
   template <class T>

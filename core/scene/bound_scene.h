@@ -24,8 +24,8 @@ struct TextureUse {
   int texture = 0;  ///< Index into SceneDescription::textures.
 };
 
-/// A plugin made by a statement, and what it refers to: textures and named materials (indices into
-/// BoundScene::materials).
+/// A plugin made by a statement, and what it refers to: the textures that it asks for, and named materials (indices
+/// into BoundScene::materials).
 template <class T>
 struct Bound {
   std::shared_ptr<T> plugin;  ///< Null when the statement is unusable (reported).

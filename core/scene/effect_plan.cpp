@@ -19,6 +19,7 @@ class Planner {
     plan_.light_live.assign(description_.lights.size(), 0);
     plan_.material_live.assign(scene_.materials.size(), 0);
     named_light_.assign(description_.area_lights.size(), 0);
+    worn_.assign(scene_.materials.size(), 0);
     place_instances();
     for (size_t i = 0; i < scene_.shapes.size(); ++i) visit_shape(i);
     scatters_ = wants(Effect::Diffuse) || wants(Effect::Glossy);
@@ -74,13 +75,7 @@ class Planner {
     call_for(effects, texture.where, description_.textures[static_cast<size_t>(index)].plugin);
     if (is_off(Effect::Textures)) return;
     live |= now;
-    visit_textures(*texture.plugin, texture.textures, filtered);
-  }
-
-  void visit_textures(const Plugin& user, const std::vector<TextureUse>& textures, bool filtered) {
-    for (const TextureUse& t : textures) {
-      if (user.reads(t.parameter)) visit_texture(t.texture, filtered);
-    }
+    for (const TextureUse& t : texture.textures) visit_texture(t.texture, filtered);
   }
 
   void visit_shape(size_t i) {
@@ -101,10 +96,12 @@ class Planner {
     plan_.shape_live[i] = 1;
     call_for(shape.plugin->effects(), d.where, d.plugin);
     if (shape.plugin->is_cut_out()) call_for({Effect::Alpha}, d.where, d.plugin);
-    if (!is_off(Effect::Alpha)) visit_textures(*shape.plugin, shape.textures, false);
+    if (!is_off(Effect::Alpha)) {
+      for (const TextureUse& t : shape.textures) visit_texture(t.texture, false);
+    }
     if (animated(d.transform)) call_for({Effect::MotionBlur}, d.where, "moving " + d.plugin);
     if (emits) visit_emission(i, lights);
-    if (!unseen) visit_material(scene_.shape_material[i], d.where);
+    if (!unseen) visit_worn(scene_.shape_material[i], d.where);
   }
 
   /// A surface that emits, which none does that moves, as in pbrt-v3. `lights`: it stands in the world, so that it also
@@ -119,23 +116,44 @@ class Planner {
   }
 
   /// A material, and a shape that wears it.
+  void visit_worn(int index, SourcePos shape) {
+    const auto m = static_cast<size_t>(index);
+    const auto& material = scene_.materials[m];
+    if (worn_[m]) return;
+    worn_[m] = 1;
+    // Where a statement is wrong and --keep-going goes on, the default material is shown.
+    if (!material.plugin && m > 0) visit_worn(0, shape);
+    visit_material(index, shape);
+    // Normals of a surface without lobes are never asked for.
+    if (!material.plugin || material.plugin->bump.is_constant() || material.plugin->effects().empty()) return;
+    call_for({Effect::Bump}, m == 0 ? shape : material.where, "bumpmap");
+    if (!is_off(Effect::Bump)) visit_bump(m, material.plugin->bump.texture().get());
+  }
+
+  /// The bump map of a worn material, which a mix has of its first member: that of no other member is seen.
+  void visit_bump(size_t m, const Plugin* map) {
+    const auto& material = scene_.materials[m];
+    for (const TextureUse& t : material.textures) {
+      if (scene_.textures[static_cast<size_t>(t.texture)].plugin.get() == map) visit_texture(t.texture, true);
+    }
+    for (const int member : material.materials) visit_bump(static_cast<size_t>(member), map);
+  }
+
+  /// The lobes of a material that is worn or part of one.
   void visit_material(int index, SourcePos shape) {
     const auto m = static_cast<size_t>(index);
     if (plan_.material_live[m]) return;
     plan_.material_live[m] = 1;
     const auto& material = scene_.materials[m];
-    // Where a statement is wrong and --keep-going goes on, the default material is shown.
-    if (!material.plugin) return m == 0 ? void() : visit_material(0, shape);
+    if (!material.plugin) return;
     // pbrt's default material is no statement, and what shapes override has the place of the one they wear.
     const SourcePos where = m == 0 ? shape : material.where;
     const std::string what = m == 0                              ? "the default material"
                              : m < description_.materials.size() ? description_.materials[m].plugin
                                                                  : "a material with overrides";
     call_for(material.plugin->effects(), where, what);
-    if (!material.plugin->bump.is_constant()) call_for({Effect::Bump}, where, "bumpmap");
     for (const TextureUse& t : material.textures) {
-      const bool read = t.parameter == "bumpmap" ? !is_off(Effect::Bump) : material.plugin->reads(t.parameter);
-      if (read) visit_texture(t.texture, true);
+      if (t.parameter != "bumpmap") visit_texture(t.texture, true);
     }
     for (const int member : material.materials) visit_material(member, shape);
   }
@@ -195,6 +213,7 @@ class Planner {
   EffectSet forgone_;  ///< Called for, but without consequence.
   std::vector<const Entity*> emitters_;
   std::vector<int> named_light_;  ///< Whether an area light has called for the effect.
+  std::vector<uint8_t> worn_;     ///< Materials that a shape wears, not only a mix.
   bool scatters_ = false;
 };
 

@@ -1,6 +1,7 @@
 // Disney's BSDF: one set of parameters from plastic and cloth to metal and thin leaves. Burley, Physically Based
 // Shading at Disney, 2012, and Extending the Disney BRDF to a BSDF with Integrated Subsurface Scattering, 2015, with
 // the choices of pbrt-v3. Where scatterdistance is not black only the boundary is simulated, no light inside.
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/fastmath.h"
@@ -16,7 +17,7 @@ struct Shared {
   RGBLanes colour, tint;  ///< tint: the colour at luminance 1; white for black.
   float *metallic, *eta, *roughness, *spectrans;
   float* diffuse;    ///< The share of the diffuse family.
-  float* difftrans;  ///< The share of diffuse light that goes through a thin surface.
+  float* difftrans;  ///< The share of diffuse light that goes through; null unless the surface is thin.
   float* aspect;     ///< Of the facets' alphas, 1 when isotropic.
 };
 
@@ -26,14 +27,9 @@ struct Disney : Material {
   Tex<float> spectrans, flatness, difftrans;
   bool thin = false;
 
-  EffectSet effects() const override {
-    const EffectSet surface{Effect::Diffuse, Effect::Glossy};
-    return scatters_inside() ? surface | EffectSet{Effect::Refraction} : surface;
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     const Shared at = shared(s);
-    if (!is_zero(at.diffuse, s.n)) add_diffuse(s, at, out);
+    if (may_be_diffuse() && !all_zero(at.diffuse, s.n)) add_diffuse(s, at, out);
     add_specular(s, at, out);
     if (may_be_positive(clearcoat)) add_clearcoat(s, out);
     if (may_be_positive(spectrans)) add_transmission(s, at, out);
@@ -42,11 +38,14 @@ struct Disney : Material {
 
  private:
   static bool may_be_positive(const Tex<float>& t) { return !t.is_constant() || t.value() > 0; }
-  static bool is_zero(const float* x, int n) {
-    for (int i = 0; i < n; ++i) {
-      if (x[i] != 0) return false;
-    }
-    return true;
+  /// Of no points nothing is known.
+  static bool all_zero(const float* x, int n) {
+    return n > 0 && std::all_of(x, x + n, [](float v) { return v == 0; });
+  }
+  /// Metal scatters nothing diffusely, and neither does what lets everything through.
+  bool may_be_diffuse() const {
+    const auto takes_all = [](const Tex<float>& share) { return share.is_constant() && share.value() == 1; };
+    return !takes_all(metallic) && !takes_all(spectrans);
   }
   bool scatters_inside() const { return !thin && !is_black(scatterdistance); }
 
@@ -68,17 +67,18 @@ struct Disney : Material {
   }
 
   Shared shared(const ShadingBatch& s) const {
-    Shared at{weights(color, s), s.arena->rgb(s.n),    metallic(s),  indices(eta, s), roughness(s),
-              spectrans(s),      s.arena->floats(s.n), difftrans(s), anisotropic(s)};
+    Shared at{weights(color, s), s.arena->rgb(s.n), metallic(s),          indices(eta, s),
+              roughness(s),      spectrans(s),      s.arena->floats(s.n), thin ? difftrans(s) : nullptr,
+              anisotropic(s)};
     for_lanes(s.n, [&](int i) {
       const RGB c = at.colour[i];
       const float y = luminance(c), scale = y > 0 ? 1 / y : 0.0f;
       at.tint.set(i, {y > 0 ? c.x * scale : 1.0f, y > 0 ? c.y * scale : 1.0f, y > 0 ? c.z * scale : 1.0f});
       at.diffuse[i] = max_of((1 - at.metallic[i]) * (1 - at.spectrans[i]), 0.0f);
-      at.difftrans[i] *= 0.5f;
       // Beyond 1 the root would leave the reals.
       at.aspect[i] = std::sqrt(1 - 0.9f * min_of(at.aspect[i], 1.0f));
     });
+    if (thin) for_lanes(s.n, [&](int i) { at.difftrans[i] *= 0.5f; });
     return at;
   }
 

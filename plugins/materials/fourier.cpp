@@ -21,8 +21,6 @@ struct Fourier : Material {
       diagnostics.error(statement, "fourier needs a \"bsdffile\"", "name a .bsdf file of layerlab's");
   }
 
-  EffectSet effects() const override { return {Effect::Glossy}; }
-
   bool prepare(const PrepareContext& context) override {
     if (bsdffile.empty()) return true;  // reported by check()
     std::ifstream file(bsdffile.path, std::ios::binary);
@@ -34,7 +32,7 @@ struct Fourier : Material {
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
-    if (table.max_order == 0) return;
+    if (s.n > 0 && table.max_order == 0) return;  // nothing in the file, or none read
     Lobe lobe;
     lobe.type = LobeType::Fourier;
     float* const one = filled(s, 1);

@@ -14,10 +14,9 @@ struct Glass : DielectricSurface {
   /// "eta" is the newer name; 0 means that it is not given, because a given one is positive.
   const Tex<float>& relative_index() const { return eta.is_constant() && eta.value() == 0 ? index : eta; }
 
-  EffectSet effects() const override { return surface_effects(); }
-  bool reads(std::string_view parameter) const override { return parameter != "index" || &relative_index() == &index; }
-
-  void lobes(const ShadingBatch& s, LobeSet& out) const override { add_surface(s, indices(relative_index(), s), out); }
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (!is_nothing()) add_surface(s, indices(relative_index(), s), out);
+  }
 };
 
 const Register<Glass> glass{

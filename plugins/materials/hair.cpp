@@ -37,12 +37,6 @@ struct Hair : Material {
     if (pheomelanin) ignored("pheomelanin");
   }
 
-  EffectSet effects() const override { return {Effect::Glossy}; }
-  bool reads(std::string_view parameter) const override {
-    const bool pigment = parameter == "eumelanin" || parameter == "pheomelanin";
-    return !(sigma_a && (pigment || parameter == "color")) && !(color && pigment);
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     float *const longitudinal = beta_m(s), *const azimuthal = beta_n(s), *const tilt = alpha(s);
     float* const offset = s.arena->floats(s.n);

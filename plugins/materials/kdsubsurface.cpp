@@ -12,10 +12,9 @@ struct KdSubsurface : DielectricSurface {
   Tex<RGB> Kd, mfp;
   float eta = 0, scale = 0, g = 0;
 
-  EffectSet effects() const override { return surface_effects(); }
-  bool reads(std::string_view parameter) const override { return parameter != "Kd" && parameter != "mfp"; }
-
-  void lobes(const ShadingBatch& s, LobeSet& out) const override { add_surface(s, filled(s, eta), out); }
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (!is_nothing()) add_surface(s, filled(s, eta), out);
+  }
 };
 
 const Register<KdSubsurface> kdsubsurface{

@@ -11,8 +11,6 @@ struct Matte : Material {
   Tex<RGB> Kd;
   Tex<float> sigma;
 
-  EffectSet effects() const override { return effect_unless_black(Effect::Diffuse, Kd); }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (is_black(Kd)) return;
     Lobe lobe;

@@ -21,11 +21,6 @@ struct Metal : Material {
   const Tex<float>& along_u() const { return uroughness ? *uroughness : roughness; }
   const Tex<float>& along_v() const { return vroughness ? *vroughness : roughness; }
 
-  EffectSet effects() const override { return {Effect::Glossy}; }
-  bool reads(std::string_view parameter) const override {
-    return parameter != "roughness" || !uroughness || !vroughness;
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     Lobe lobe;
     lobe.type = LobeType::MicrofacetReflection;

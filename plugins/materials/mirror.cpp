@@ -8,8 +8,6 @@ namespace {
 struct Mirror : Material {
   Tex<RGB> Kr;
 
-  EffectSet effects() const override { return effect_unless_black(Effect::Reflection, Kr); }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (is_black(Kr)) return;
     Lobe lobe;

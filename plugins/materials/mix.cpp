@@ -18,13 +18,6 @@ struct Mix : Material {
     if (namedmaterial1) bump = namedmaterial1->bump;
   }
 
-  EffectSet effects() const override {
-    EffectSet e;
-    for (const auto& member : {namedmaterial1, namedmaterial2})
-      if (member && !member->is_interface()) e |= member->effects();
-    return e;
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     const RGBLanes first = weights(amount, s), second = one_minus(s, first);
     if (namedmaterial1) add_share(*namedmaterial1, first, s, out);

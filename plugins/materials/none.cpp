@@ -6,7 +6,6 @@ namespace whit {
 namespace {
 
 struct None : Material {
-  EffectSet effects() const override { return {Effect::Interfaces}; }
   bool is_interface() const override { return true; }
   void lobes(const ShadingBatch& /*s*/, LobeSet& /*out*/) const override {}
 };

@@ -10,11 +10,8 @@ struct PerfectGlass : Material {
   Tex<RGB> Kr, Kt;
   Tex<float> index;
 
-  EffectSet effects() const override {
-    return effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (is_black(Kr) && is_black(Kt)) return;
     Lobe lobe;
     lobe.fresnel = FresnelType::Dielectric;
     lobe.eta = indices(index, s);

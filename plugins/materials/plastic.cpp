@@ -14,12 +14,6 @@ struct Plastic : Material {
   Tex<float> roughness;
   bool remaproughness = true;
 
-  EffectSet effects() const override {
-    return effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks);
-  }
-
-  bool reads(std::string_view parameter) const override { return parameter != "roughness" || !is_black(Ks); }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (!is_black(Kd)) {
       Lobe diffuse;

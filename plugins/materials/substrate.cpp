@@ -13,8 +13,6 @@ struct Substrate : Material {
 
   bool is_nothing() const { return is_black(Kd) && is_black(Ks); }
 
-  EffectSet effects() const override { return is_nothing() ? EffectSet{} : EffectSet{Effect::Glossy}; }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (is_nothing()) return;
     Lobe lobe;

@@ -71,10 +71,9 @@ struct Subsurface : DielectricSurface {
     diagnostics.warning(statement, "no medium is called \"" + name + '"', did_you_mean(name, kMedia));
   }
 
-  EffectSet effects() const override { return surface_effects(); }
-  bool reads(std::string_view parameter) const override { return parameter != "sigma_a" && parameter != "sigma_s"; }
-
-  void lobes(const ShadingBatch& s, LobeSet& out) const override { add_surface(s, filled(s, eta), out); }
+  void lobes(const ShadingBatch& s, LobeSet& out) const override {
+    if (!is_nothing()) add_surface(s, filled(s, eta), out);
+  }
 };
 
 const Register<Subsurface> subsurface{

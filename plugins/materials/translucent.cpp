@@ -15,11 +15,6 @@ struct Translucent : Material {
 
   bool is_nothing() const { return is_black(reflect) && is_black(transmit); }
 
-  EffectSet effects() const override {
-    if (is_nothing()) return {};
-    return effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks);
-  }
-
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     Lobe lobe;
     lobe.fresnel = FresnelType::Dielectric;

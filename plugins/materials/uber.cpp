@@ -24,28 +24,20 @@ struct Uber : Material {
     return opacity.is_constant() && v.x >= 1 && v.y >= 1 && v.z >= 1;
   }
 
-  EffectSet effects() const override {
-    const EffectSet passage = is_opaque() ? EffectSet{} : EffectSet{Effect::Refraction};
-    if (is_black(opacity)) return passage;
-    return passage | effect_unless_black(Effect::Diffuse, Kd) | effect_unless_black(Effect::Glossy, Ks) |
-           effect_unless_black(Effect::Reflection, Kr) | effect_unless_black(Effect::Refraction, Kt);
-  }
-
-  bool reads(std::string_view parameter) const override {
-    if (parameter == "index") return !eta;
-    return parameter != "roughness" || !uroughness;
-  }
+  /// Whether a lobe follows Fresnel's equations, so that the index matters.
+  bool is_shiny() const { return !is_black(opacity) && !(is_black(Ks) && is_black(Kr) && is_black(Kt)); }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     Lobe lobe;
-    lobe.fresnel = FresnelType::Dielectric;
-    lobe.eta = indices(relative_index(), s);
-    out.eta = lobe.eta;
+    if (is_shiny()) {
+      lobe.fresnel = FresnelType::Dielectric;
+      lobe.eta = out.eta = indices(relative_index(), s);
+    }
     const RGBLanes solid = weights(opacity, s);
     if (!is_opaque()) add_passage(s, solid, lobe.eta, out);
     if (is_black(opacity)) return;
     add(s, lobe, LobeType::LambertReflection, Kd, solid, out);
-    set_alphas(lobe, along_u(), along_v(), remaproughness, s);
+    if (!is_black(Ks)) set_alphas(lobe, along_u(), along_v(), remaproughness, s);
     add(s, lobe, LobeType::MicrofacetReflection, Ks, solid, out);
     add(s, lobe, LobeType::SpecularReflection, Kr, solid, out);
     add(s, lobe, LobeType::SpecularTransmission, Kt, solid, out);
@@ -69,6 +61,7 @@ struct Uber : Material {
     passage.eta = filled(s, 1);
     passage.weight = one_minus(s, solid);
     out.add(passage);
+    if (!eta) return;  // 1 anyway
     float* const seen = s.arena->floats(s.n);
     const RGBLanes w = passage.weight;
     for_lanes(s.n, [&](int i) { seen[i] = w.r[i] + w.g[i] + w.b[i] > 0 ? 1.0f : eta[i]; });

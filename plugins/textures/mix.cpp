@@ -22,7 +22,11 @@ class Mix : public Texture<T> {
   EffectSet effects() const override { return {}; }
   void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
     const ArenaScope scratch(*s.arena);
-    blend<T>(s.n, tex1(s), tex2(s), amount(s), out);
+    // At either end the other is not asked for.
+    const auto share_is = [this](float share) { return amount.is_constant() && amount.value() == share; };
+    const auto first = (share_is(1) ? tex2 : tex1)(s);
+    const auto second = share_is(0) || share_is(1) ? first : tex2(s);
+    blend<T>(s.n, first, second, amount(s), out);
   }
 };
 

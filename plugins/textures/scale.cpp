@@ -12,6 +12,9 @@ class Scale : public Texture<T> {
 
   std::optional<T> constant() const override {
     if (tex1.is_constant() && tex2.is_constant()) return tex1.value() * tex2.value();
+    for (const Tex<T>* factor : {&tex1, &tex2}) {
+      if (factor->is_constant() && factor->value() == T(0.0f)) return T(0.0f);
+    }
     return std::nullopt;
   }
   EffectSet effects() const override { return {}; }

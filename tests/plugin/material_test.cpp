@@ -110,8 +110,8 @@ std::optional<Parameter> any_value(const ParamSpec& spec, std::mt19937& random) 
   return std::nullopt;
 }
 
-TEST(EveryMaterial, DeclaresTheEffectsOfAllItsLobes) {
-  // The renderer drops lobes of effects that no material of the scene declares.
+TEST(EveryMaterial, CallsForTheEffectsOfAllItsLobes) {
+  // The renderer drops lobes of effects that no material of the scene calls for when it is asked with no points.
   std::mt19937 random(7);
   for (const PluginInfo* info : list_plugins("material")) {
     for (int i = 0; i < 300; ++i) {

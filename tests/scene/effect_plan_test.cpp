@@ -176,7 +176,7 @@ TEST(EffectPlan, NamesAreReadBack) {
   for_effects(EffectSet::all(), [&](Effect e) { EXPECT_EQ(parse_effects(effect_name(e), unknown), EffectSet{e}); });
   EXPECT_EQ(unknown, "");
   for (const char* wrong : {"", "bumps", "bump,", ",bump", "bump, alpha"}) {
-    unknown = "?";
+    unknown.assign(1, '?');
     EXPECT_TRUE(parse_effects(wrong, unknown).empty()) << wrong;
     EXPECT_NE(unknown, "?") << wrong;
   }
@@ -201,6 +201,67 @@ TEST(EffectPlan, TexturesThatNoParameterReadsAreNotLive) {
   EXPECT_EQ(live("\"plastic\" \"texture roughness\" \"t\" \"rgb Ks\" [0 0 0]"), (Live{0, 0}));
   EXPECT_EQ(live("\"subsurface\" \"texture sigma_a\" \"c\" \"texture uroughness\" \"t\""), (Live{kOn, 0}));
   EXPECT_EQ(live("\"kdsubsurface\" \"texture Kd\" \"c\" \"texture mfp\" \"c\""), (Live{0, 0}));
+}
+
+TEST(EffectPlan, TexturesOfLobesThatAreAbsentAreNotLive) {
+  // Each material with textures that only a lobe it lacks would read: nothing is textured, and nothing filtered.
+  for (const char* material :
+       {"\"uber\" \"rgb Ks\" [0 0 0] \"texture roughness\" \"t\" \"texture index\" \"t\"",
+        "\"uber\" \"rgb opacity\" [0 0 0] \"texture Kd\" \"c\" \"texture Ks\" \"c\" \"texture index\" \"t\"",
+        "\"translucent\" \"rgb Ks\" [0 0 0] \"texture roughness\" \"t\"",
+        "\"translucent\" \"rgb reflect\" [0 0 0] \"rgb transmit\" [0 0 0] \"texture Kd\" \"c\" \"texture roughness\" "
+        "\"t\"",
+        "\"substrate\" \"rgb Kd\" [0 0 0] \"rgb Ks\" [0 0 0] \"texture uroughness\" \"t\"",
+        "\"glass\" \"rgb Kr\" [0 0 0] \"rgb Kt\" [0 0 0] \"texture uroughness\" \"t\" \"texture index\" \"t\"",
+        "\"perfectglass\" \"rgb Kr\" [0 0 0] \"rgb Kt\" [0 0 0] \"texture index\" \"t\"",
+        "\"subsurface\" \"rgb Kr\" [0 0 0] \"rgb Kt\" [0 0 0] \"texture uroughness\" \"t\"",
+        "\"matte\" \"rgb Kd\" [0 0 0] \"texture sigma\" \"t\"",
+        "\"disney\" \"texture clearcoatgloss\" \"t\" \"texture flatness\" \"t\" \"texture difftrans\" \"t\"",
+        "\"disney\" \"float metallic\" 1 \"texture sheen\" \"t\" \"texture sheentint\" \"t\"",
+        "\"matte\" \"rgb Kd\" [0 0 0] \"texture bumpmap\" \"t\"",
+        "\"hair\" \"rgb sigma_a\" [1 1 1] \"texture color\" \"c\" \"texture eumelanin\" \"t\""}) {
+    const Planned planned(scene("Texture \"t\" \"float\" \"windy\" Texture \"c\" \"spectrum\" \"windy\" Material " +
+                                std::string(material) + " Shape \"disk\""),
+                          Planned::Warnings::Allowed);
+    EXPECT_FALSE(planned.warnings.has_errors()) << material;
+    EXPECT_EQ(planned.plan.texture_live, (std::vector<uint8_t>{0, 0})) << material;
+    EXPECT_FALSE(planned.plan.live(Effect::TextureFiltering)) << material;
+    EXPECT_FALSE(planned.plan.needs_differentials()) << material;
+  }
+  EXPECT_EQ(effects_of(scene("Material \"disney\" \"float metallic\" 1 Shape \"disk\"")), Effects{"glossy"});
+}
+
+TEST(EffectPlan, TexturesOfTexturesThatAreNotAskedForAreNotLive) {
+  const auto live = [](const std::string& texture) {
+    return Planned(scene("Texture \"a\" \"spectrum\" \"windy\" Texture \"b\" \"spectrum\" \"windy\" Texture \"t\" "
+                         "\"spectrum\" " +
+                         texture + " Material \"matte\" \"texture Kd\" \"t\" Shape \"disk\""))
+        .plan.texture_live;
+  };
+  using Live = std::vector<uint8_t>;
+  const std::string both = "\"mix\" \"texture tex1\" \"a\" \"texture tex2\" \"b\" ";
+  EXPECT_EQ(live(both), (Live{3, 3, 3}));
+  EXPECT_EQ(live(both + "\"float amount\" 0"), (Live{3, 0, 3}));
+  EXPECT_EQ(live(both + "\"float amount\" 1"), (Live{0, 3, 3}));
+  EXPECT_EQ(live("\"scale\" \"texture tex1\" \"a\""), (Live{3, 0, 3}));
+  EXPECT_EQ(live("\"scale\" \"texture tex1\" \"a\" \"rgb tex2\" [0 0 0]"), (Live{0, 0, 0}));  // black
+}
+
+TEST(EffectPlan, AMixHasTheBumpMapOfItsFirstMember) {
+  const auto plan = [](const std::string& order) {
+    return Planned(scene(R"(Texture "waves" "float" "windy"
+        MakeNamedMaterial "flat" "string type" "matte"
+        MakeNamedMaterial "rough" "string type" "matte" "texture bumpmap" "waves"
+        Material "mix" )" +
+                         order + " Shape \"disk\""))
+        .plan;
+  };
+  const EffectPlan flat = plan(R"("string namedmaterial1" "flat" "string namedmaterial2" "rough")");
+  EXPECT_FALSE(flat.called_for.has(Effect::Bump));
+  EXPECT_EQ(flat.texture_live, std::vector<uint8_t>{0});
+  const EffectPlan rough = plan(R"("string namedmaterial1" "rough" "string namedmaterial2" "flat")");
+  EXPECT_TRUE(rough.live(Effect::Bump));
+  EXPECT_EQ(rough.texture_live, std::vector<uint8_t>{3});
 }
 
 TEST(EffectPlan, WhatNobodyNeedsIsNotLive) {

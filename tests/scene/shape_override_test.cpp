@@ -8,10 +8,10 @@ namespace {
 
 using test::Planned;
 
-/// How many of the scene's textures the material of its only shape refers to.
+/// How many of the scene's textures the material of its only shape asks for.
 size_t textures_of(const std::string& material, const std::string& shape) {
   const Planned planned(
-      "WorldBegin\nTexture \"t\" \"spectrum\" \"constant\" Texture \"u\" \"spectrum\" \"uv\"\n"
+      "WorldBegin\nTexture \"t\" \"spectrum\" \"bilerp\" Texture \"u\" \"spectrum\" \"uv\"\n"
       "Material \"matte\" " +
       material + "\nShape \"sphere\" " + shape + "\nWorldEnd\n");
   const BoundScene& bound = planned.bound;
