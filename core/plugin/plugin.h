@@ -1,7 +1,8 @@
-// What every plugin has in common: it is bound cheaply, says which effects it calls for, and is prepared
+// What every plugin has in common: it is bound cheaply, says which effects it calls for, and is read and prepared
 // (files read, tables built) only when the plan keeps it.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "core/base/diagnostics.h"
@@ -23,7 +24,7 @@ struct PrepareContext {
 };
 
 /// Base of all plugins. Life: constructed with defaults, parameters bound, check(), effects(), and, when the
-/// plan keeps it, prepare().
+/// plan keeps it, read() and prepare().
 class Plugin {
  public:
   virtual ~Plugin() = default;
@@ -37,8 +38,32 @@ class Plugin {
   /// The textures of its parameters that it ever evaluates. After binding.
   virtual std::vector<const Plugin*> textures_read() const { return {}; }
 
-  /// Reads files and builds tables. Returns false after reporting an error.
+ protected:
+  /// Reads files that decide whether the plugin can be used at all. Returns false after reporting an error.
+  virtual bool read(Diagnostics&, SourcePos /*statement*/) { return true; }
+
+  /// Reads other files and builds tables. Returns false after reporting an error.
   virtual bool prepare(const PrepareContext&) { return true; }
+
+ private:
+  template <class Pointer>
+  friend Pointer after_reading(Pointer, Diagnostics&, SourcePos);
+  template <class Pointer>
+  friend Pointer prepared(Pointer, const PrepareContext&);
 };
+
+/// The plugin after read(), or nothing when that failed (reported): nobody holds a plugin that could not be read.
+template <class Pointer>
+[[nodiscard]] Pointer after_reading(Pointer plugin, Diagnostics& diagnostics, SourcePos statement) {
+  if (plugin && !static_cast<Plugin&>(*plugin).read(diagnostics, statement)) plugin.reset();
+  return plugin;
+}
+
+/// The plugin after prepare(), or nothing when that failed (reported). There is no other way to prepare a plugin.
+template <class Pointer>
+[[nodiscard]] Pointer prepared(Pointer plugin, const PrepareContext& context) {
+  if (plugin && !static_cast<Plugin&>(*plugin).prepare(context)) plugin.reset();
+  return plugin;
+}
 
 }  // namespace whit

@@ -17,6 +17,7 @@
 #include "core/scene/huge.h"
 #include "core/scene/light_end.h"
 #include "core/scene/motion.h"
+#include "core/scene/read.h"
 #include "core/scene/scene.h"
 
 namespace whit {
@@ -83,10 +84,12 @@ class Builder {
 
   std::unique_ptr<Scene> run() {
     if (!options_complete()) return nullptr;
+    read_live(scene_->bound, scene_->plan, diagnostics_);
     drop_unneeded();
+    prepare_sampling();
+    if (!options_complete()) return nullptr;
     scene_->accel = std::make_unique<Accel>(
         AccelOptions{.robust = options_.robust_traversal, .second_look = scene_->sampler().is_regular()});
-    prepare_sampling();
     const auto start = Clock::now();
     load_groups();
     part_huge_triangles();
@@ -99,6 +102,7 @@ class Builder {
     place_instances();
     prepare_lights();
     prepare_camera();
+    if (!options_complete()) return nullptr;
     const auto placed = Clock::now();
     const std::string problem = scene_->accel->build();
     if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
@@ -169,9 +173,15 @@ class Builder {
     for (const Diagnostics& report : reports) diagnostics_.append(report);
   }
 
+  /// Reads and prepares a plugin, which is dropped when that fails.
   template <class T>
-  void prepare_option(const Bound<T>& option) {
-    option.plugin->prepare(context(option.where));
+  void prepare(Bound<T>& bound) {
+    prepare(bound, diagnostics_);
+  }
+  template <class T>
+  void prepare(Bound<T>& bound, Diagnostics& diagnostics) {
+    bound.plugin = after_reading(std::move(bound.plugin), diagnostics, bound.where);
+    bound.plugin = prepared(std::move(bound.plugin), context(bound.where, diagnostics));
   }
 
   void prepare_sampling() {
@@ -183,13 +193,11 @@ class Builder {
       sampler.set_samples_per_pixel(options_.samples_per_pixel);
     }
     scene_->samples_per_pixel = sampler.samples_per_pixel();
-    prepare_option(scene_->bound.sampler);
-    prepare_option(scene_->bound.filter);
-    prepare_option(scene_->bound.film);
-    prepare_option(scene_->bound.integrator);
-    for (const auto& light : scene_->bound.area_lights) {
-      if (light.plugin) prepare_option(light);
-    }
+    prepare(scene_->bound.sampler);
+    prepare(scene_->bound.filter);
+    prepare(scene_->bound.film);
+    prepare(scene_->bound.integrator);
+    for (auto& light : scene_->bound.area_lights) prepare(light);
     scene_->time_start = description().time_start;
     scene_->time_end = description().time_end;
   }
@@ -222,11 +230,13 @@ class Builder {
   /// Reads or makes the geometry of a shape and finds its bounds, which stay empty when there is none.
   void load_shape(LoadedShape& loaded, Diagnostics& diagnostics) {
     const ShapeDescription& d = description().shapes[loaded.description];
-    Shape& shape = *scene_->bound.shapes[loaded.description].plugin;
+    auto& bound = scene_->bound.shapes[loaded.description];
+    prepare(bound, diagnostics);
+    if (!bound.plugin) return;
+    Shape& shape = *bound.plugin;
     const TransformPair placement = transform(d.transform);
     const Mat4d to_world = placement.animated() ? Mat4d() : placement.start;
     const PrepareContext ctx = context(d.where, diagnostics);
-    if (!shape.prepare(ctx)) return;
     if (auto* mesh = dynamic_cast<MeshShape*>(&shape)) {
       if (!mesh->build_mesh(ctx, loaded.mesh)) return;
       loaded.bounds = mesh_bounds(loaded.mesh, to_world);
@@ -414,6 +424,7 @@ class Builder {
   }
 
   void add_shape(const Group& group, const LoadedShape& loaded, BakedShape baked) {
+    if (!scene_->bound.shapes[loaded.description].plugin) return;  // dropped with a texture that cuts it out
     const ShapeDescription& d = description().shapes[loaded.description];
     Shape& plugin = *scene_->bound.shapes[loaded.description].plugin;
     SceneShape shape;
@@ -581,26 +592,30 @@ class Builder {
   // ---- Everything else ----
 
   void prepare_materials() {
-    for_each(scene_->bound.textures.size(), [&](size_t i, Diagnostics& diagnostics) {
-      const auto& texture = scene_->bound.textures[i];
-      if (texture.plugin && scene_->plan.texture_live[i]) texture.plugin->prepare(context(texture.where, diagnostics));
+    BoundScene& bound = scene_->bound;
+    std::vector<uint8_t> failed(bound.textures.size());
+    for_each(bound.textures.size(), [&](size_t i, Diagnostics& diagnostics) {
+      if (!bound.textures[i].plugin || !scene_->plan.texture_live[i]) return;
+      prepare(bound.textures[i], diagnostics);
+      failed[i] = !bound.textures[i].plugin;
     });
-    for (size_t i = 0; i < scene_->bound.materials.size(); ++i) {
-      auto& material = scene_->bound.materials[i];
-      if (!material.plugin) {
-        // Nobody wears it. Or its statement was wrong, which has been reported; --keep-going shows the default material.
-        material.plugin = scene_->bound.materials[0].plugin;
-      } else if (scene_->plan.material_live[i]) {
-        material.plugin->prepare(context(material.where));
-      }
+    for (size_t i = 0; i < bound.materials.size(); ++i) {
+      if (scene_->plan.material_live[i]) prepare(bound.materials[i]);
+    }
+    drop_users(bound, failed);
+    for (auto& material : bound.materials) {
+      // Nobody wears it. Or it is not usable, which has been reported; --keep-going shows the default material.
+      if (!material.plugin) material.plugin = bound.materials[0].plugin;
       scene_->materials.push_back(material.plugin.get());
     }
   }
 
   void prepare_lights() {
     for (size_t i = 0; i < scene_->bound.lights.size(); ++i) {
-      const auto& light = scene_->bound.lights[i];
-      if (!scene_->plan.light_live[i] || !light.plugin->prepare(context(light.where))) continue;
+      auto& light = scene_->bound.lights[i];
+      if (!scene_->plan.light_live[i]) continue;
+      prepare(light);
+      if (!light.plugin) continue;
       SceneLight entry;
       entry.light = light.plugin.get();
       entry.is_delta = light.plugin->is_delta();
@@ -644,7 +659,8 @@ class Builder {
       camera.film.resolution.x = std::max(1, camera.film.resolution.x / 4);
       camera.film.resolution.y = std::max(1, camera.film.resolution.y / 4);
     }
-    camera.prepare(context(scene_->bound.camera.where));
+    prepare(scene_->bound.camera);
+    if (!scene_->bound.camera.plugin) return;
     const TransformPair world_to_camera = transform(description().camera_transform);
     const TransformPair camera_to_world{world_to_camera.start.inverse(), world_to_camera.end.inverse()};
     for (const Mat4d& key : keyframes(camera_to_world)) {

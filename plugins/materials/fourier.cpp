@@ -21,13 +21,13 @@ struct Fourier : Material {
       diagnostics.error(statement, "fourier needs a \"bsdffile\"", "name a .bsdf file of layerlab's");
   }
 
-  bool prepare(const PrepareContext& context) override {
+  bool read(Diagnostics& diagnostics, SourcePos) override {
     if (bsdffile.empty()) return true;  // reported by check()
     std::ifstream file(bsdffile.path, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
     const std::string problem = file.bad() || !file.is_open() ? "cannot be read" : parse_fourier_table(bytes, table);
     if (problem.empty()) return true;
-    context.diagnostics->file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
+    diagnostics.file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
     return false;
   }
 

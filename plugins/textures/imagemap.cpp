@@ -22,13 +22,14 @@ class ImageMap : public Texture2D<T> {
     if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
   }
 
+  bool read(Diagnostics& diagnostics, SourcePos /*statement*/) override {
+    if (begins_like_a_picture(filename.path)) return true;
+    const Result<ImageInfo> info = probe_image(filename.path);
+    if (!info.ok()) diagnostics.file_error(filename.where, info.error);
+    return info.ok();
+  }
+
   bool prepare(const PrepareContext& ctx) override {
-    if (!begins_like_a_picture(filename.path)) {
-      if (const Result<ImageInfo> info = probe_image(filename.path); !info.ok()) {
-        ctx.diagnostics->file_error(filename.where, info.error);
-        return false;
-      }
-    }
     TextureSpec spec;
     spec.path = filename.path;
     spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;

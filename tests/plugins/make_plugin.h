@@ -44,7 +44,8 @@ struct Made {
   bool silent() const { return plugin && diagnostics.all().empty(); }
   bool prepare(PrepareContext ctx = {}) {
     ctx.diagnostics = &diagnostics;
-    return plugin->prepare(ctx);
+    plugin = prepared(after_reading(std::move(plugin), diagnostics, SourcePos()), ctx);
+    return plugin != nullptr;
   }
 };
 

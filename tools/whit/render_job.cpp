@@ -34,8 +34,8 @@ class RenderJob {
     times_.parse = file.parse_seconds;
     parsed_memory_ = resident_memory();
     // A file with mistakes is reported whole: also what planning would have said of it.
-    const bool mistaken = file.parsed.diagnostics.has_errors();
-    const Diagnostics found = mistaken ? all_problems(file, sources_) : file.parsed.diagnostics;
+    reported_whole_ = file.parsed.diagnostics.has_errors();
+    const Diagnostics found = reported_whole_ ? all_problems(file, sources_) : file.parsed.diagnostics;
     if (int code = report(found); code != kDone) return code;
     if (file.parsed.scenes.empty()) return kSceneError;
     int worst = kDone;
@@ -56,6 +56,9 @@ class RenderJob {
     log(d);
     if (!d.has_errors()) return kDone;
     if (!settings_.keep_going) return exit_code(d);
+    for (const Diagnostic& one : d.all()) {
+      if (one.severity == Severity::Error) passed_.push_back(one);
+    }
     say("going on with what is usable (--keep-going)");
     return kDone;
   }
@@ -69,6 +72,7 @@ class RenderJob {
   int render_world(const SceneDescription& world) {
     Diagnostics diagnostics;
     PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
+    if (reported_whole_) diagnostics = {};  // All of it has been said.
     times_.plan = planned.seconds;
     if (world.has_media()) {
       diagnostics.warning(world.first_medium(), "participating media are not simulated", "the picture is made without");
@@ -156,7 +160,20 @@ class RenderJob {
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
     if (settings_.quiet) return kDone;
     summarise({scene, result, output, textures, times_, unread_.size(), parsed_memory_}, settings_.stats);
+    if (!passed_.empty()) name_what_was_passed();
     return kDone;
+  }
+
+  /// The end of a summary where --keep-going went past errors.
+  void name_what_was_passed() const {
+    const Diagnostic& first = passed_.front();
+    const size_t n = passed_.size();
+    const std::string where =
+        first.where.known() ? fmt::format(" ({}:{})", sources_.name(first.where.file), sources_.place(first.where).line)
+                            : "";
+    say(fmt::format("The picture is not the whole scene: {} passed over, {}{}{}.",
+                    n == 1 ? "1 error was" : fmt::format("{} errors were", n),
+                    n == 1 ? "" : "the first: ", first.message, where));
   }
 
   /// Renders; a texture that cannot be read ends it, for there will be no picture.
@@ -213,9 +230,11 @@ class RenderJob {
   const std::string path_;
   Sources sources_;
   StepTimes times_;
-  double parsed_memory_ = 0;       ///< Resident after parsing, in bytes.
-  std::set<std::string> written_;  ///< Pictures of this file's worlds.
-  std::set<std::string> unread_;   ///< Files of objects that this world never places.
+  double parsed_memory_ = 0;        ///< Resident after parsing, in bytes.
+  std::set<std::string> written_;   ///< Pictures of this file's worlds.
+  bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.
+  std::vector<Diagnostic> passed_;  ///< Errors that --keep-going went past.
+  std::set<std::string> unread_;    ///< Files of objects that this world never places.
 };
 
 }  // namespace
