@@ -122,10 +122,18 @@ void SceneBuilder::change_ctm(const Statement& s, const Mat4d& m, bool concatena
   TransformPair changed = transforms_.ctm;
   if (transforms_.start_active) changed.start = concatenate ? m * transforms_.ctm.start : m;
   if (transforms_.end_active) changed.end = concatenate ? m * transforms_.ctm.end : m;
-  if (!is_regular(changed.start) || (changed.animated() && !is_regular(changed.end))) {
+  const bool regular = is_regular(changed.start) && (!changed.animated() || is_regular(changed.end));
+  if (!regular && !in_world_) {
     reporter_.error(s.where, std::string(s.row->name) + " makes a matrix that cannot be inverted",
                     "nothing may be scaled to zero or infinity");
     return;
+  }
+  // In the world it is no mistake until something stands there.
+  if (regular) {
+    changed.singular = -1;
+  } else if (changed.singular < 0) {
+    changed.singular = static_cast<int>(scene().singular.size());
+    scene().singular.push_back({std::string(s.row->name), s.where});
   }
   transforms_.ctm = changed;
 }
@@ -195,14 +203,16 @@ int SceneBuilder::intern(const TransformPair& pair) {
   const auto same = [&](const TransformPair& other) { return other.start == pair.start && other.end == pair.end; };
   if (same(known[0])) return 0;
   if (!same(known[known.size() - 1])) known.add(pair);
-  return static_cast<int>(known.size() - 1);
+  const int index = static_cast<int>(known.size() - 1);
+  if (pair.singular >= 0) scene().singular_transforms.emplace(index, pair.singular);
+  return index;
 }
 
 /// The index of the CTM; with `warn_animated` only its start is used, as pbrt does for what cannot move.
 int SceneBuilder::current_transform(const Statement& s, bool warn_animated) {
   if (!warn_animated || !transforms_.ctm.animated()) return intern(transforms_.ctm);
   reporter_.warning(s.where, std::string(s.row->name) + " cannot move", "only the transform at the start time is used");
-  return intern({transforms_.ctm.start, transforms_.ctm.start});
+  return intern({transforms_.ctm.start, transforms_.ctm.start, transforms_.ctm.singular});
 }
 
 // ------------------------------------------------------------------------------------------------- options
@@ -510,8 +520,8 @@ void SceneBuilder::resolve_textures(ParameterList& list) {
       reference.float_texture = look_up(float_textures_, reference.name);
       reference.spectrum_texture = look_up(spectrum_textures_, reference.name);
       if (reference.float_texture >= 0 || reference.spectrum_texture >= 0) continue;
-      reporter_.error(value_position(sources_, parameter, i), "no texture named " + in_quotes(reference.name),
-                      suggest(reporter_, reference.name, float_textures_, spectrum_textures_));
+      // An error when the statement is bound, unless nothing uses it.
+      reference.hint = suggest(reporter_, reference.name, float_textures_, spectrum_textures_);
     }
   }
 }

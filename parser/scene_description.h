@@ -4,6 +4,7 @@
 // into indices. Nothing is instantiated and no plugin name or parameter is checked yet (core/scene does).
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ namespace whit {
 /// An object-to-world (or world-to-camera) matrix at the start and the end of the transform times.
 struct TransformPair {
   Mat4d start, end;
+  int singular = -1;  ///< While parsing: index into SceneDescription::singular where it cannot be inverted.
   bool animated() const { return start != end; }
 };
 
@@ -89,6 +91,12 @@ struct InstanceDescription {
   SourcePos where;
 };
 
+/// A statement that made a matrix which cannot be inverted.
+struct SingularTransform {
+  std::string statement;  ///< "Scale".
+  SourcePos where;
+};
+
 /// A file included in the definition of an object that is never placed. Nothing of it is in the description: not its
 /// shapes, and neither the lights, coordinate systems and media of the whole world that it may define. Nor is what stands
 /// behind it in the object and matters to the object alone, for that may build on the file.
@@ -112,6 +120,9 @@ struct SceneDescription {
   double time_start = 0, time_end = 1;
 
   TransformList transforms;  ///< [0] is the identity; others deduplicated against the last used.
+  std::vector<SingularTransform> singular;
+  std::map<int, int> singular_transforms;  ///< Transforms that cannot be inverted, and who made each so.
+  bool is_singular(int transform) const { return singular_transforms.count(transform) > 0; }
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;  ///< [0] is pbrt's default: matte with no parameters.
   std::vector<LightDescription> lights;

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <mutex>
+#include <sstream>
 
 namespace whit {
 
@@ -293,7 +294,8 @@ std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour
   out.append(" ").append(printable(diagnostic.message)).append("\n");
   if (located) out += excerpt(diagnostic.where, colour);
   if (find(diagnostic.other.file)) out += "  and " + location(diagnostic.other) + "\n";
-  if (!diagnostic.remedy.empty()) out.append("  ").append(printable(diagnostic.remedy)).append("\n");
+  std::istringstream remedy(diagnostic.remedy);
+  for (std::string line; std::getline(remedy, line);) out.append("  ").append(printable(line)).append("\n");
   return out;
 }
 

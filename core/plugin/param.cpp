@@ -211,13 +211,25 @@ bool read_texture(const Parameter& p, const BindContext& ctx, Tex<T>& out) {
     return true;
   }
   if (index < 0)
-    return fail(ctx, ctx.at(p), called(p, ctx) + " names an unknown " + wanted + " texture: \"" + ref.name + '"',
-                "a texture must be defined before it is used");
+    return fail(ctx, ctx.at(p), "no texture named \"" + ref.name + '"',
+                ref.hint.empty() ? "a texture must be defined before it is used" : ref.hint);
   std::shared_ptr<Texture<T>> texture;
   if constexpr (wants_float) texture = ctx.float_texture(index, p.name);
   else texture = ctx.spectrum_texture(index, p.name);
-  if (!texture) return false;  // its own statement has the error
+  if (!texture) return !ctx.with_textures;  // its own statement has the error
   if (ctx.with_textures || texture->constant()) out = Tex<T>(std::move(texture));
+  return true;
+}
+
+/// Reads a parameter that may be a texture; one that cannot be read is kept as missing where BindContext wants that.
+template <class T, class Read>
+bool read_or_miss(const BindContext& ctx, Tex<T>& out, const Read& read) {
+  const size_t before = ctx.diagnostics->all().size();
+  if (read()) return true;
+  if (!ctx.missing) return false;
+  auto stand_in = std::make_shared<MissingTexture<T>>();
+  ctx.missing->push_back({stand_in, before, ctx.diagnostics->all().size() - before});
+  out = Tex<T>(std::move(stand_in));
   return true;
 }
 
@@ -373,8 +385,13 @@ struct Kind<Tex<float>> {
   static constexpr ParamType accepts[] = {ParamType::Float, ParamType::Texture};
   static std::string text(const Tex<float>& v) { return v.is_constant() ? number_text(v.value()) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, Tex<float>& out) {
+    return read_or_miss(ctx, out, [&] { return read_it(p, ctx, range, out); });
+  }
+
+ private:
+  static bool read_it(const Parameter& p, const BindContext& ctx, const Range& range, Tex<float>& out) {
     if (p.type == ParamType::Texture) return read_texture(p, ctx, out);
-    if (p.numbers().size() > 1) return read(first_value(p, ctx, 1), ctx, range, out);
+    if (p.numbers().size() > 1) return read_it(first_value(p, ctx, 1), ctx, range, out);
     float v = out.value();
     const bool ok = read_float(p, ctx, range, v);
     if (ok && p.numbers().size() == 1) out = Tex<float>(v);
@@ -404,10 +421,10 @@ struct Kind<std::shared_ptr<Material>> {
   static bool read(const Parameter& p, const BindContext& ctx, const Range&, std::shared_ptr<Material>& out) {
     const auto& v = p.strings();
     if (const Count count = count_values(p, ctx, v.size()); count != Count::One) return count == Count::Several;
-    out = ctx.named_material ? ctx.named_material(v[0]) : nullptr;
-    if (out) return true;
+    const bool known = ctx.named_material && ctx.named_material(v[0], out);
+    if (known) return out != nullptr;  // its own statement has the error
     return fail(ctx, ctx.at(p), called(p, ctx) + " names a material that is not there: \"" + v[0] + '"',
-                "a named material must be made, without errors, before it is used");
+                "a named material must be made before it is used");
   }
 };
 
@@ -417,10 +434,15 @@ struct Kind<Tex<RGB>> {
                                           ParamType::Texture};
   static std::string text(const Tex<RGB>& v) { return v.is_constant() ? Kind<RGB>::text(v.value()) : std::string(); }
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, Tex<RGB>& out) {
+    return read_or_miss(ctx, out, [&] { return read_it(p, ctx, range, out); });
+  }
+
+ private:
+  static bool read_it(const Parameter& p, const BindContext& ctx, const Range& range, Tex<RGB>& out) {
     if (p.type == ParamType::Texture) return read_texture(p, ctx, out);
     const size_t each = p.type == ParamType::Blackbody ? 2 : 3, numbers = p.numbers().size();
     if (p.type != ParamType::Spectrum && numbers > each && numbers % each == 0)
-      return read(first_value(p, ctx, each), ctx, range, out);
+      return read_it(first_value(p, ctx, each), ctx, range, out);
     RGB v = out.value();
     const bool ok = read_colour(p, ctx, range, v);
     if (ok) out = Tex<RGB>(v);

@@ -77,6 +77,12 @@ struct IntegerList : List<int32_t> {};
 /// Pairs of surface parameters, which pbrt-v3 takes as floats or as point2 alike. Bound in shape.cpp.
 struct UvList : List<double> {};
 
+/// A parameter that may be a texture and could not be read. What it gives is not wrong unless the plugin asks for it.
+struct MissingParameter {
+  std::shared_ptr<const Plugin> stand_in;  ///< What the plugin has instead.
+  size_t first_problem = 0, problems = 0;  ///< What was said of it, in BindContext::diagnostics.
+};
+
 /// What binding needs to know of the scene around a statement.
 struct BindContext {
   Diagnostics* diagnostics = nullptr;
@@ -88,8 +94,10 @@ struct BindContext {
   std::function<std::shared_ptr<Texture<float>>(int, const std::string&)> float_texture;
   std::function<std::shared_ptr<Texture<RGB>>(int, const std::string&)> spectrum_texture;
   bool with_textures = true;  ///< Else a parameter that names one which is not constant keeps its default.
-  /// The bound material of a name (for mix); null when there is none.
-  std::function<std::shared_ptr<class Material>(const std::string&)> named_material;
+  /// Where parameters that could not be read are listed; when null, the first of them makes binding fail.
+  std::vector<MissingParameter>* missing = nullptr;
+  /// Finds the bound material of a name (for mix), null when its statement is unusable; false when there is none.
+  std::function<bool(const std::string&, std::shared_ptr<class Material>&)> named_material;
   /// The place of the i-th value of a parameter.
   std::function<SourcePos(const Parameter&, size_t)> value_position;
 

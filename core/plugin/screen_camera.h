@@ -22,6 +22,10 @@ class ScreenCamera : public Camera {
       d.warning(statement, "the shutter closes before it opens", "the two times are swapped");
       std::swap(shutter_open, shutter_close);
     }
+    if (needs_lens() && !(focal_distance > 0)) {
+      d.error(statement, "\"focaldistance\" must be above 0 where \"lensradius\" is",
+              "it is the distance at which things are sharp");
+    }
     if (!screen_window.given) return;
     const auto& w = screen_window.values;
     if (w.size() != 4) {
@@ -78,7 +82,7 @@ inline auto lensradius_param() {
 }
 inline auto focaldistance_param() {
   return param(&ScreenCamera::focal_distance, "focaldistance", 1e6f, Unit::Length,
-               "Distance along z of the plane that is sharp.", kPositive);
+               "Distance along z of the plane that is sharp; above 0 where there is a lens.");
 }
 
 }  // namespace whit

@@ -57,6 +57,15 @@ class Texture : public Plugin {
   }
 };
 
+/// Stands where a parameter could not be had, which has been reported, so that it is known who asks for it.
+template <class T>
+class MissingTexture final : public Texture<T> {
+ public:
+  void evaluate(const ShadingBatch& s, const typename Texture<T>::Lanes& out) const override {
+    for_lanes(s.n, [&](int i) { ValueLanes<T>::set(out, i, T(0.0f)); });
+  }
+};
+
 /// Whether a texture of floats or colours is the same everywhere, so that what uses it holds the value.
 inline bool is_folded(const Plugin& texture) {
   if (const auto* floats = dynamic_cast<const Texture<float>*>(&texture)) return floats->constant().has_value();

@@ -36,6 +36,9 @@ struct TextureMapping2D {
   MappedPoints map(const ShadingBatch& s) const;
 };
 
+/// Whether there is a way back; Imath gives the identity where there is none.
+inline bool is_invertible(const Mat4d& m) { return m == Mat4d() || m.gjInverse() != Mat4d(); }
+
 /// A texture in two dimensions: declares, binds and prepares its mapping. Register it with Register2D.
 template <class T>
 class Texture2D : public Texture<T> {
@@ -43,6 +46,13 @@ class Texture2D : public Texture<T> {
   Choice mapping;  ///< As TextureMapping2D::Kind.
   float uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
   Vector v1, v2;
+
+  bool read(Diagnostics& diagnostics, SourcePos statement) override {
+    if (mapping.index == TextureMapping2D::Uv || is_invertible(this->texture_to_world)) return true;
+    diagnostics.error(statement, "the transform of this texture's mapping cannot be inverted",
+                      "nothing may be scaled to zero or infinity");
+    return false;
+  }
 
   bool prepare(const PrepareContext& ctx) override {
     map_ = make_mapping(mapping.index, {uscale, vscale, udelta, vdelta}, v1.value, v2.value, this->texture_to_world,

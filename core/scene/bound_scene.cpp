@@ -33,24 +33,44 @@ class Binder {
     bind_materials();
     bind_options();
     for (const auto& light : description_.lights) {
+      begin(Problem::Of::Light, scene_.lights.size());
       scene_.lights.push_back(
           bind_entity<Light>(light, "light", {Severity::Warning, nullptr, "the light is left out"}));
-      if (auto& l = scene_.lights.back().plugin) l->light_to_world = transform(light.transform).start;
+      auto& l = scene_.lights.back().plugin;
+      if (l) l->light_to_world = transform(light.transform).start;
+      if (description_.is_singular(light.transform)) l.reset();
     }
     for (const auto& light : description_.area_lights) {
+      begin(Problem::Of::AreaLight, scene_.area_lights.size());
       scene_.area_lights.push_back(
           bind_entity<AreaLight>(light, "area light", {Severity::Warning, nullptr, "the emission is left out"}));
     }
-    for (const auto& shape : description_.shapes) bind_shape(shape);
+    for (const auto& shape : description_.shapes) {
+      begin(Problem::Of::Shape, scene_.shapes.size());
+      bind_shape(shape);
+      if (description_.is_singular(shape.transform)) scene_.shapes.back().plugin.reset();
+    }
+    for (size_t i = 0; i < description_.singular.size(); ++i) {
+      begin(Problem::Of::Transform, i);
+      const auto& [statement, where] = description_.singular[i];
+      report({Severity::Error, ErrorClass::Scene, where, statement + " makes a matrix that cannot be inverted",
+              "nothing may be scaled to zero or infinity"});
+    }
+    for (const Problem& p : scene_.problems) diagnostics_.add(p.diagnostic);
     return std::move(scene_);
   }
 
  private:
   TransformPair transform(int i) const { return description_.transforms[static_cast<size_t>(i)]; }
 
+  /// What is said from here on is of that statement.
+  void begin(Problem::Of of, size_t index) { of_ = of, index_ = index; }
+  void report(Diagnostic diagnostic, bool unread = false) {
+    scene_.problems.push_back({std::move(diagnostic), of_, index_, unread});
+  }
+
   BindContext context(const Entity& entity, const std::string& name, std::vector<TextureUse>* used_textures) {
     BindContext ctx;
-    ctx.diagnostics = &diagnostics_;
     ctx.statement = entity.where;
     ctx.statement_name = name;
     ctx.folder = description_.folder;
@@ -78,8 +98,8 @@ class Binder {
       if (!remedy.empty()) remedy += ' ';
       remedy += unknown.consequence;
     }
-    diagnostics_.add({unknown.severity, ErrorClass::Scene, entity.plugin_at,
-                      fmt::format("unknown {} \"{}\"", category, entity.plugin), remedy});
+    report({unknown.severity, ErrorClass::Scene, entity.plugin_at,
+            fmt::format("unknown {} \"{}\"", category, entity.plugin), remedy});
     return unknown.fallback ? find_plugin(category, unknown.fallback) : nullptr;
   }
 
@@ -93,38 +113,67 @@ class Binder {
     std::shared_ptr<Plugin> plugin(info.make());
     BindContext ctx = context(entity, info.name, &bound.textures);
     if constexpr (std::is_same_v<Statement, MaterialDescription>) {
-      ctx.named_material = [this, &entity, &bound](const std::string& name) {
-        return named_material(entity, name, &bound.materials);
+      ctx.named_material = [this, &entity, &bound](const std::string& name, std::shared_ptr<Material>& found) {
+        return find_material(entity, name, found, bound.materials);
       };
     }
-    const bool good = bind_parameters(info, *plugin, params, ctx, also_known);
-    const size_t before = diagnostics_.all().size();
-    if (good) plugin->check(diagnostics_, entity.where);
-    const bool checked =
-        std::none_of(diagnostics_.all().begin() + static_cast<ptrdiff_t>(before), diagnostics_.all().end(),
-                     [](const Diagnostic& d) { return d.severity == Severity::Error; });
-    if (!good || !checked) return bound;
+    Diagnostics said;
+    ctx.diagnostics = &said;
     // Of these it is known what they ask for.
-    if (info.category == Material::kCategory || binding_textures_) keep_what_is_read(*plugin, bound.textures);
-    bound.plugin = std::dynamic_pointer_cast<T>(plugin);
+    std::vector<MissingParameter> missing;
+    if (info.category == Material::kCategory || binding_textures_) ctx.missing = &missing;
+    bool good = bind_parameters(info, *plugin, params, ctx, also_known);
+    if (good) good = check(*plugin, said, entity.where);
+    if (!good) missing.clear();
+    if (good && ctx.missing) good = find_what_is_read(*plugin, bound.textures, missing);
+    const bool dark = gives_no_light(*plugin);
+    for (size_t i = 0; i < said.all().size(); ++i) report(said.all()[i], dark || is_of_any(missing, i));
+    if (good) bound.plugin = std::dynamic_pointer_cast<T>(plugin);
     return bound;
   }
 
-  /// Drops the textures that the plugin does not ask for.
-  void keep_what_is_read(const Plugin& plugin, std::vector<TextureUse>& uses) const {
-    // With textures switched off it is not seen who would ask for them.
-    if (uses.empty() || (!with_textures_ && !binding_textures_)) return;
+  static bool check(Plugin& plugin, Diagnostics& said, SourcePos statement) {
+    Diagnostics found;
+    plugin.check(found, statement);
+    said.append(found);
+    return !found.has_errors();
+  }
+
+  /// Drops the textures that the plugin does not ask for, and from `missing` what it does ask for. False when there is
+  /// such a parameter.
+  bool find_what_is_read(const Plugin& plugin, std::vector<TextureUse>& uses,
+                         std::vector<MissingParameter>& missing) const {
+    if (missing.empty() && uses.empty()) return true;
     const std::vector<const Plugin*> read = plugin.textures_read();
+    const auto is_read = [&](const Plugin* p) { return std::find(read.begin(), read.end(), p) != read.end(); };
+    const size_t wanted = std::erase_if(missing, [&](const MissingParameter& m) { return is_read(m.stand_in.get()); });
+    if (wanted > 0) return false;
+    // With textures switched off it is not seen who would ask for them.
+    if (!with_textures_ && !binding_textures_) return true;
     std::erase_if(uses, [&](const TextureUse& use) {
-      const Plugin* texture = scene_.textures[static_cast<size_t>(use.texture)].plugin.get();
-      return std::find(read.begin(), read.end(), texture) == read.end();
+      return !is_read(scene_.textures[static_cast<size_t>(use.texture)].plugin.get());
     });
+    return true;
+  }
+
+  /// Whether the i-th thing that was said is about one of the parameters.
+  static bool is_of_any(const std::vector<MissingParameter>& parameters, size_t i) {
+    return std::any_of(parameters.begin(), parameters.end(), [i](const MissingParameter& m) {
+      return i >= m.first_problem && i < m.first_problem + m.problems;
+    });
+  }
+
+  /// What is wrong with a light that is black by its other parameters is not seen.
+  static bool gives_no_light(const Plugin& plugin) {
+    if (const auto* light = dynamic_cast<const Light*>(&plugin)) return light->is_black();
+    const auto* emission = dynamic_cast<const AreaLight*>(&plugin);
+    return emission && is_black(emission->radiance());
   }
 
   template <class T>
   Bound<T> bind_entity(const Entity& entity, const std::string& category, const Unknown& unknown) {
     const PluginInfo* info = find(entity, category, unknown);
-    if (!info) return Bound<T>{nullptr, entity.where, {}, {}};
+    if (!info) return Bound<T>{nullptr, entity.where, {}, {}, false};
     // A fallback plugin does not know the parameters of the one that was meant.
     static const ParameterList none;
     const bool meant = info == find_plugin(category, entity.plugin);
@@ -142,6 +191,7 @@ class Binder {
   }
 
   void bind_options() {
+    begin(Problem::Of::Options, 0);
     scene_.camera = bind_option<Camera>(description_.camera, "camera", "perspective", {Severity::Error, nullptr, ""});
     scene_.film = bind_option<Film>(description_.film, "film", "image", {Severity::Error, nullptr, ""});
     scene_.filter = bind_option<Filter>(description_.filter, "filter", "box",
@@ -169,9 +219,10 @@ class Binder {
     const PluginInfo* halton =
         find(entity, "sampler", {Severity::Warning, "halton", "halton is used instead, at the same number of samples"});
     scene_.sampler = bind_as<Sampler>(entity, *halton, keep_only(entity.params, {"pixelsamples"}));
+    scene_.sampler.replaced = true;
   }
 
-  /// Every integrator of pbrt's is rendered as Whitted's, which is said once; maxdepth is kept.
+  /// An integrator that nobody has registered is rendered as Whitted's, which is said once; maxdepth is kept.
   void bind_integrator() {
     const Entity& entity = description_.integrator;
     if (entity.plugin.empty() || find_plugin("integrator", entity.plugin)) {
@@ -181,17 +232,26 @@ class Binder {
     static const std::vector<std::string> pbrt = {"directlighting",  "path", "volpath", "bdpt", "mlt", "sppm",
                                                   "ambientocclusion"};
     const bool known = std::find(pbrt.begin(), pbrt.end(), entity.plugin) != pbrt.end();
-    diagnostics_.warning(entity.plugin_at,
-                         fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"),
-                         known ? "the picture is made with whitted: direct light, mirrors and refraction"
-                               : "the picture is made with whitted" + did_you_mean(entity.plugin, pbrt));
+    std::string remedy = "the picture is made with whitted";
+    if (known) {
+      remedy += ": direct light, mirrors and refraction";
+    } else {
+      std::vector<std::string> names = plugin_names("integrator");
+      names.insert(names.end(), pbrt.begin(), pbrt.end());
+      const std::string hint = did_you_mean(entity.plugin, names);
+      if (!hint.empty()) remedy += '\n' + hint;
+    }
+    report({Severity::Warning, ErrorClass::Scene, entity.plugin_at,
+            fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"), remedy});
     scene_.integrator = bind_as<Integrator>(entity, *find_plugin("integrator", "whitted"),
                                             keep_only(entity.params, {"maxdepth", "pixelbounds"}));
+    scene_.integrator.replaced = true;
   }
 
   void bind_textures() {
     binding_textures_ = true;
     for (const auto& t : description_.textures) {
+      begin(Problem::Of::Texture, scene_.textures.size());
       scene_.textures.push_back(
           bind_entity<Plugin>(t, t.spectrum ? "spectrum texture" : "float texture", {Severity::Error, nullptr, ""}));
       const auto& plugin = scene_.textures.back().plugin;
@@ -204,6 +264,7 @@ class Binder {
 
   void bind_materials() {
     for (const auto& m : description_.materials) {
+      begin(Problem::Of::Material, scene_.materials.size());
       const PluginInfo* info = find(m, "material", {Severity::Warning, "matte", "matte is used instead"});
       const bool meant = info == find_plugin("material", m.plugin);
       scene_.materials.push_back(bind_as<Material>(m, *info, meant ? m.params : known_params(m.params, *info)));
@@ -217,22 +278,22 @@ class Binder {
     return keep_only(params, names);
   }
 
-  std::shared_ptr<Material> named_material(const MaterialDescription& statement, const std::string& name,
-                                           std::vector<int>* used) {
+  bool find_material(const MaterialDescription& statement, const std::string& name, std::shared_ptr<Material>& found,
+                     std::vector<int>& used) const {
     for (const auto& [known, index] : statement.named) {
-      if (known == name && static_cast<size_t>(index) < scene_.materials.size()) {
-        used->push_back(index);
-        return scene_.materials[static_cast<size_t>(index)].plugin;
-      }
+      if (known != name || static_cast<size_t>(index) >= scene_.materials.size()) continue;
+      used.push_back(index);
+      found = scene_.materials[static_cast<size_t>(index)].plugin;
+      return true;
     }
-    return nullptr;
+    return false;
   }
 
   void bind_shape(const ShapeDescription& shape) {
     scene_.shape_material.push_back(shape.material);
     const PluginInfo* info = find(shape, "shape", {Severity::Warning, nullptr, "the shape is left out"});
     if (!info) {
-      scene_.shapes.push_back({nullptr, shape.where, {}, {}});
+      scene_.shapes.push_back({nullptr, shape.where, {}, {}, false});
       return;
     }
     const auto& material = description_.materials[static_cast<size_t>(shape.material)];
@@ -259,13 +320,15 @@ class Binder {
                           [&](const Parameter& o) { return o.name == p.name && overrides(o); });
     });
     // The material's own problems have been reported at its statement; only the shape's are news.
-    Diagnostics all;
-    std::swap(all, diagnostics_);
+    const size_t before = scene_.problems.size();
     auto bound = bind_as<Material>(material, material_info, merged);
-    std::swap(all, diagnostics_);
-    for (const Diagnostic& d : all.all()) {
-      if (d.where.file == shape.where.file && d.where.offset >= shape.where.offset) diagnostics_.add(d);
-    }
+    const auto is_old = [&](const Problem& p) {
+      const SourcePos at = p.diagnostic.where;
+      return at.file != shape.where.file || at.offset < shape.where.offset;
+    };
+    scene_.problems.erase(
+        std::remove_if(scene_.problems.begin() + static_cast<ptrdiff_t>(before), scene_.problems.end(), is_old),
+        scene_.problems.end());
     scene_.shape_material.back() = static_cast<int>(scene_.materials.size());
     scene_.materials.push_back(std::move(bound));
   }
@@ -275,6 +338,8 @@ class Binder {
   Diagnostics& diagnostics_;
   const bool with_textures_;
   bool binding_textures_ = false;
+  Problem::Of of_ = Problem::Of::Options;
+  size_t index_ = 0;
   BoundScene scene_;
 };
 

@@ -32,6 +32,16 @@ struct Bound {
   SourcePos where;
   std::vector<TextureUse> textures;
   std::vector<int> materials;
+  bool replaced = false;  ///< It is not the plugin that the statement names, which nobody has.
+};
+
+/// What was said of a statement. Whether it matters is known when the scene is planned: core/scene/problems.h.
+struct Problem {
+  enum class Of : uint8_t { Options, Texture, Material, Light, AreaLight, Shape, Transform };
+  Diagnostic diagnostic;
+  Of of = Of::Options;
+  size_t index = 0;     ///< Of the statement among those of its kind.
+  bool unread = false;  ///< It is of a parameter that the plugin does not ask for.
 };
 
 struct BoundScene {
@@ -50,6 +60,7 @@ struct BoundScene {
   std::vector<int> shape_material;
   /// What a shape radiates; null for nothing, be it black.
   const AreaLight* emission_of(const ShapeDescription& shape) const;
+  std::vector<Problem> problems;         ///< Found while binding.
   std::deque<ParameterList> own_params;  ///< Lists made while binding, kept for the plugins that refer to them.
 };
 

@@ -540,6 +540,7 @@ class Builder {
     scene_->instances.reserve(description().instances.size());
     for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])), description().world_begin);
     for (const auto& instance : description().instances) {
+      if (description().is_singular(instance.transform)) continue;  // reported
       const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
       const Group& object = groups_[static_cast<size_t>(instance.object + 1)];
       place(object, keys, instance.where);

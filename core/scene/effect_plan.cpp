@@ -202,7 +202,7 @@ class Planner {
   void note_ignored() {
     const SceneDescription& d = description_;
     if (d.has_media()) plan_.ignored.push_back({"participating media", d.first_medium()});
-    if (!d.integrator.plugin.empty() && d.integrator.plugin != "whitted") {
+    if (scene_.integrator.replaced) {
       plan_.ignored.push_back({"integrator \"" + d.integrator.plugin + '"', d.integrator.where});
     }
   }

@@ -231,6 +231,10 @@ class Realistic final : public Camera {
 
   bool prepare(const PrepareContext& ctx) override {
     if (!read_lens(ctx)) return false;
+    if (!(film.diagonal > 0)) {
+      ctx.diagnostics->error(ctx.statement, "the realistic camera needs a film whose \"diagonal\" is above 0");
+      return false;
+    }
     double move = 0;
     if (!lens_.focus(static_cast<double>(focusdistance), 0.001 * film.diagonal, move)) {
       ctx.diagnostics->error(ctx.statement, "this lens cannot be focused at \"focusdistance\"");

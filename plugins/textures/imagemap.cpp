@@ -22,7 +22,8 @@ class ImageMap : public Texture2D<T> {
     if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
   }
 
-  bool read(Diagnostics& diagnostics, SourcePos /*statement*/) override {
+  bool read(Diagnostics& diagnostics, SourcePos statement) override {
+    if (!Texture2D<T>::read(diagnostics, statement)) return false;
     if (begins_like_a_picture(filename.path)) return true;
     const Result<ImageInfo> info = probe_image(filename.path);
     if (!info.ok()) diagnostics.file_error(filename.where, info.error);

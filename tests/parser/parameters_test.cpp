@@ -163,8 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Mistake{"\"string r\" \"open", 22, "string not closed", "closing \""},
                     Mistake{"\"string r\" [ \"open", 24, "string not closed", ""},
                     Mistake{"\"string r", 11, "string not closed", ""},
-                    Mistake{"\"string r\" \"a\\qb\"", 24, "unknown escape", "backslash"},
-                    Mistake{"\"texture r\" \"nope\"", 23, "no texture named \"nope\"", ""}));
+                    Mistake{"\"string r\" \"a\\qb\"", 24, "unknown escape", "backslash"}));
 
 }  // namespace
 }  // namespace whit

@@ -52,7 +52,8 @@ TEST(Scenes, SeveralWorldsShareNothing) {
   EXPECT_EQ(second.shapes.at(0).material, 0);
   EXPECT_FALSE(second.shapes.at(0).reverse_orientation);
   EXPECT_EQ(second.materials.size(), 1u);
-  EXPECT_EQ(parsed.all().size(), 4u) << parsed.messages();  // t, m, o and "camera" are not known any more.
+  EXPECT_EQ(parsed.all().size(), 3u) << parsed.messages();  // m, o and "camera" are not known any more,
+  EXPECT_EQ(second.shapes.at(0).params.at(0).textures().at(0).float_texture, -1);  // and neither is t
 }
 
 TEST(Scenes, MaterialsAndAreaLightsFollowAttributeBlocksOnly) {

@@ -93,8 +93,6 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ObjectBegin \"tree\" ObjectEnd\nObjectInstance \"tere\"", 3, 16, "no object named \"tere\"",
                 "did you mean \"tree\"?"},
         Mistake{"Texture \"t\" \"rgb\" \"constant\"", 2, 13, "cannot be of type \"rgb\"", "\"spectrum\""},
-        Mistake{"Texture \"wood\" \"float\" \"constant\"\nMaterial \"m\" \"texture Kd\" [ \"wodo\" ]", 3, 29,
-                "no texture named \"wodo\"", "did you mean \"wood\"?"},
         Mistake{"Include \"none.pbrt\"", 2, 9, "cannot open \"/nowhere/none.pbrt\"", ""}));
 
 TEST(Statements, UnclosedBlocksAreWarnings) {

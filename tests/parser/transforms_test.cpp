@@ -157,14 +157,34 @@ TEST(Transforms, Singular) {
   EXPECT_FALSE(is_regular(translation({std::numeric_limits<double>::quiet_NaN(), 1, 1})));
 }
 
-TEST(Transforms, SingularStatementsAreErrorsAndChangeNothing) {
-  const Parsed parsed(in_world("Translate 1 0 0\n  Scale 1 0 1\nShape \"s\""));
-  expect_only(parsed, Severity::Error, 3, 3, "Scale makes a matrix that cannot be inverted");
-  EXPECT_EQ(transform_point(parsed.scene().transforms[1].start, {0, 0, 0}), Vec3d(1, 0, 0));
-  expect_only(Parsed(in_world("Transform [ 1 0 0 0  0 1 0 0  0 0 0 0  0 0 0 1 ]")), Severity::Error, 2, 1, "Transform");
-  expect_only(Parsed(in_world("Rotate 30 0 0 0")), Severity::Error, 2, 8, "axis of length zero");
+TEST(Transforms, SingularOnesAreKeptWithTheStatementThatMadeThem) {
+  // Whether they are mistakes depends on what stands there, and whether that is seen.
+  const auto singular = [](const std::string& text) {
+    const Parsed parsed(in_world(text));
+    EXPECT_TRUE(parsed.result.diagnostics.all().empty());
+    std::vector<std::string> found;
+    for (const ShapeDescription& shape : parsed.scene().shapes) {
+      const auto made = parsed.scene().singular_transforms.find(shape.transform);
+      found.push_back("regular");
+      if (made == parsed.scene().singular_transforms.end()) continue;
+      const auto& [statement, where] = parsed.scene().singular[static_cast<size_t>(made->second)];
+      const SourcePlace place = parsed.sources.place(where);
+      found.back() = statement + " " + std::to_string(place.line) + ":" + std::to_string(place.column);
+    }
+    return found;
+  };
+  using Found = std::vector<std::string>;
+  EXPECT_EQ(singular("Translate 1 0 0\n  Scale 1 0 1\nTranslate 1 0 0 Shape \"s\""), Found{"Scale 3:3"});
+  EXPECT_EQ(singular("Transform [ 1 0 0 0  0 1 0 0  0 0 0 0  0 0 0 1 ] Shape \"s\""), Found{"Transform 2:1"});
+  EXPECT_EQ(singular("AttributeBegin Scale 0 1 1 Shape \"s\" AttributeEnd Shape \"s\""),
+            (Found{"Scale 2:16", "regular"}));
+  EXPECT_EQ(singular("Scale 0 1 1 CoordinateSystem \"c\" Identity Shape \"s\" CoordSysTransform \"c\" Shape \"s\""),
+            (Found{"regular", "Scale 2:1"}));
   // Overflow by repetition is found where it happens.
-  expect_only(Parsed(in_world("Scale 1e200 1 1\nScale 1e200 1 1")), Severity::Error, 3, 1, "Scale");
+  EXPECT_EQ(singular("Scale 1e200 1 1\nScale 1e200 1 1 Shape \"s\""), Found{"Scale 3:1"});
+  expect_only(Parsed(in_world("Rotate 30 0 0 0")), Severity::Error, 2, 8, "axis of length zero");
+  // Before the world, where the camera stands.
+  expect_only(Parsed("Scale 1 0 1\n" + in_world("")), Severity::Error, 1, 1, "cannot be inverted");
 }
 
 TEST(Transforms, EqualOnesAreKeptOnce) {

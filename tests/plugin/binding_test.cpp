@@ -262,10 +262,7 @@ TEST_F(Binding, Textures) {
   warns(reference("ts", 0, -1),
         "warning@20: \"ts\" of everything needs a spectrum texture; \"wood\" is a float texture / it is ignored, as in "
         "pbrt-v3");
-  fails(reference("tf", -1, -1),
-        "error@20: \"tf\" of everything names an unknown float texture: \"wood\" / a texture must be defined before it "
-        "is "
-        "used");
+  fails(reference("tf", -1, -1), "error@20: no texture named \"wood\" / a texture must be defined before it is used");
   // The texture wins over the value of the same name, wherever it stands.
   plugin.tf = Tex<float>(0.0f);
   EXPECT_TRUE(bind({reference("tf", 0, -1), numbers(ParamType::Float, "tf", {1})}));

@@ -298,8 +298,10 @@ std::unique_ptr<Material> make_mix(const std::map<std::string, std::shared_ptr<M
   std::unique_ptr<Material> mix = make_default(*info);
   BindContext ctx;
   ctx.diagnostics = &diagnostics, ctx.statement_name = "mix";
-  ctx.named_material = [&](const std::string& name) {
-    return named.count(name) ? named.at(name) : std::shared_ptr<Material>();
+  ctx.named_material = [&](const std::string& name, std::shared_ptr<Material>& found) {
+    const auto known = named.find(name);
+    if (known != named.end()) found = known->second;
+    return known != named.end();
   };
   if (bind_parameters(*info, *mix, parameters, ctx)) mix->check(diagnostics, {});
   return mix;

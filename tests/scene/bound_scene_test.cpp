@@ -68,5 +68,24 @@ TEST(BoundScene, AnUnknownMaterialBecomesMatteOfItsColour) {
   EXPECT_EQ(Loose("Material \"velvet\" " + kRed + "\nShape \"sphere\" " + kGreen).weight(), kIsGreen);
 }
 
+TEST(BoundScene, AnUnknownIntegratorIsSaidWithItsHintOnALineOfItsOwn) {
+  const auto remedy = [](const std::string& name) {
+    Sources sources;
+    const ParseResult parsed =
+        parse_text(sources, "test.pbrt", "Integrator \"" + name + "\"\nWorldBegin\nWorldEnd\n", "");
+    Diagnostics said;
+    bind_scene(parsed.scenes[0], {}, said);
+    EXPECT_EQ(said.all().size(), 1u);
+    return said.all().empty() ? "" : said.all()[0].remedy;
+  };
+  EXPECT_EQ(remedy("mypath"), "the picture is made with whitted\ndid you mean \"path\"?");
+  EXPECT_EQ(remedy("wited"), "the picture is made with whitted\ndid you mean \"whitted\"?");
+  EXPECT_EQ(remedy("photonmap"), "the picture is made with whitted");
+  EXPECT_EQ(remedy("path"), "the picture is made with whitted: direct light, mirrors and refraction");
+  Sources sources;
+  EXPECT_EQ(sources.render_diagnostic({Severity::Warning, ErrorClass::Scene, {}, "a", "b\nc"}, false),
+            "warning: a\n  b\n  c\n");
+}
+
 }  // namespace
 }  // namespace whit

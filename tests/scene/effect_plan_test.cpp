@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <set>
 
+#include "core/plugin/registry.h"
 #include "tests/scene/scene_text.h"
 
 namespace whit {
@@ -338,6 +339,19 @@ TEST(EffectPlan, CausesNameTheStatement) {
   ASSERT_EQ(use.causes.size(), 1u);
   EXPECT_EQ(use.causes[0].what, "mirror");
   EXPECT_EQ(planned.sources.location(use.causes[0].where), "test.pbrt:3:3");
+}
+
+/// An integrator that somebody else has made.
+struct NoLight : Integrator {
+  void shade(RayRound&) const override {}
+  int max_depth() const override { return 1; }
+};
+const Register<NoLight> no_light{"nolight", "For a test."};
+
+TEST(EffectPlan, AnIntegratorThatIsRegisteredIsSimulated) {
+  const Planned planned(scene("", "Integrator \"nolight\"\n"));
+  EXPECT_TRUE(planned.plan.ignored.empty());
+  EXPECT_NE(dynamic_cast<const NoLight*>(planned.bound.integrator.plugin.get()), nullptr);
 }
 
 TEST(EffectPlan, WhatIsNotSimulatedIsNamed) {

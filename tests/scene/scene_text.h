@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/scene/effect_plan.h"
+#include "core/scene/problems.h"
 #include "core/scene/scene.h"
 #include "parser/lexer.h"
 #include "parser/parse.h"
@@ -51,9 +52,9 @@ struct Planned {
     Diagnostics said;
     const ValuePosition position = [this](const Parameter& p, size_t i) { return value_position(sources, p, i); };
     bound = bind_scene(parsed.scenes[0], position, said, !options.off.has(Effect::Textures));
-    if (mode == Warnings::Failures) expect_silence(said);
-    warnings = said;
     plan = plan_effects(bound, options);
+    if (mode == Warnings::Failures) expect_silence(said);
+    warnings = weigh_problems(bound, plan);
   }
 };
 

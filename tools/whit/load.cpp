@@ -5,6 +5,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "core/scene/problems.h"
 #include "parser/lexer.h"
 
 namespace whit {
@@ -48,8 +49,10 @@ PlannedScene plan_scene(const SceneDescription& description, const Sources& sour
   const auto start = std::chrono::steady_clock::now();
   PlannedScene out;
   const ValuePosition position = [&sources](const Parameter& p, size_t i) { return value_position(sources, p, i); };
-  out.bound = bind_scene(description, position, diagnostics, !options.off.has(Effect::Textures));
+  Diagnostics unweighed;
+  out.bound = bind_scene(description, position, unweighed, !options.off.has(Effect::Textures));
   out.plan = plan_effects(out.bound, options);
+  diagnostics.append(weigh_problems(out.bound, out.plan));
   check_build(out.plan, diagnostics);
   out.seconds = since(start);
   return out;

@@ -1,0 +1,13 @@
+// What was said while a scene was bound, in the light of its plan: what nothing uses cannot be wrong with the picture.
+#pragma once
+
+#include "core/base/diagnostics.h"
+#include "core/scene/effect_plan.h"
+
+namespace whit {
+
+/// The problems of a bound scene, in order; errors of statements and parameters that the picture does not need, as
+/// warnings that whit check calls errors (Diagnostic::excused).
+Diagnostics weigh_problems(const BoundScene& scene, const EffectPlan& plan);
+
+}  // namespace whit
