@@ -136,7 +136,8 @@ std::vector<float> distances(const Scene& scene, int n, int batch, bool coherent
     const HitLanes hits{t.data() + first,        shape.data() + first, prim.data() + first,
                         instance.data() + first, u.data() + first,     v.data() + first};
     scene.accel->intersect(
-        {std::min(batch, n - first), o.vec3().from(first), d.vec3().from(first), nullptr, nullptr, -1}, hits, coherent);
+        {std::min(batch, n - first), o.vec3().from(first), d.vec3().from(first), nullptr, nullptr, nullptr, {}}, hits,
+        coherent);
   }
   for (int i = 0; i < n; ++i) out[i] = shape[i] < 0 ? -1.0f : t[i];
   return out;
