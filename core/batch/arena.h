@@ -15,7 +15,8 @@ namespace whit {
 /// A bump allocator of 64-byte aligned arrays. Not thread-safe: one per worker.
 class Arena {
  public:
-  Arena() = default;
+  /// Takes memory from the heap in blocks of so many bytes, or what a larger array needs.
+  explicit Arena(size_t block_size = size_t{1} << 20) : block_size_(block_size) {}
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
@@ -41,7 +42,6 @@ class Arena {
 
  private:
   static constexpr size_t kAlign = 64;
-  static constexpr size_t kBlock = size_t{1} << 20;
   struct Free {
     void operator()(void* p) const { std::free(p); }
   };
@@ -60,6 +60,7 @@ class Arena {
   }
   void* take_from_next_block(size_t bytes);
 
+  const size_t block_size_;
   std::vector<Block> blocks_;
   size_t current_ = 0, used_ = 0;
 };

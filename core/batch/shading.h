@@ -36,6 +36,9 @@ struct ShadingBatch {
 
   bool has_footprint() const { return kKnowsDifferentials && dudx != nullptr; }
 
+  /// Enough arena for no points: a material or texture that is asked what it is made of.
+  static constexpr size_t kNoPoints = 4096;
+
   /// The points [first, first + count) as a batch of their own.
   ShadingBatch range(int first, int count) const;
 };

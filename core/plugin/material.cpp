@@ -11,7 +11,7 @@ struct DryRun {
 
 DryRun run_dry(const Material& material) {
   DryRun run;
-  Arena arena;
+  Arena arena(ShadingBatch::kNoPoints);
   ShadingBatch no_points;
   no_points.arena = &arena;
   no_points.textures_asked = &run.textures;

@@ -48,7 +48,7 @@ class Texture : public Plugin {
 
   std::vector<const Plugin*> textures_read() const final {
     std::vector<const Plugin*> textures;
-    Arena arena;
+    Arena arena(ShadingBatch::kNoPoints);
     ShadingBatch no_points;
     no_points.arena = &arena;
     no_points.textures_asked = &textures;

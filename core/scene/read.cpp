@@ -12,11 +12,15 @@ template <class T>
 std::vector<uint8_t> read_all(std::vector<Bound<T>>& all, const std::vector<uint8_t>& live, std::vector<uint8_t>& done,
                               Diagnostics& diagnostics) {
   std::vector<uint8_t> failed(all.size());
-  std::vector<Diagnostics> said(all.size());
   done.resize(all.size());
-  tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) {
-    if (!live[i] || done[i] || !all[i].plugin) return;
-    all[i].plugin = after_reading(std::move(all[i].plugin), said[i], all[i].where);
+  std::vector<size_t> unread;
+  for (size_t i = 0; i < all.size(); ++i) {
+    if (live[i] && !done[i] && all[i].plugin) unread.push_back(i);
+  }
+  std::vector<Diagnostics> said(unread.size());
+  tbb::parallel_for(size_t{0}, unread.size(), [&](size_t k) {
+    const size_t i = unread[k];
+    all[i].plugin = after_reading(std::move(all[i].plugin), said[k], all[i].where);
     done[i] = 1, failed[i] = !all[i].plugin;
   });
   for (const Diagnostics& d : said) diagnostics.append(d);
