@@ -38,7 +38,6 @@ struct TextureRef {
   std::string name;
   int float_texture = -1;
   int spectrum_texture = -1;
-  std::string hint{};  ///< Where there is neither: what the name may have been meant to be, as a remedy.
 
   bool operator==(const TextureRef&) const = default;
 };

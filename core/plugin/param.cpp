@@ -210,9 +210,11 @@ bool read_texture(const Parameter& p, const BindContext& ctx, Tex<T>& out) {
         "it is ignored, as in pbrt-v3");
     return true;
   }
-  if (index < 0)
+  if (index < 0) {
+    const std::string hint = ctx.texture_hint ? ctx.texture_hint(ref.name) : "";
     return fail(ctx, ctx.at(p), "no texture named \"" + ref.name + '"',
-                ref.hint.empty() ? "a texture must be defined before it is used" : ref.hint);
+                hint.empty() ? "a texture must be defined before it is used" : hint);
+  }
   std::shared_ptr<Texture<T>> texture;
   if constexpr (wants_float) texture = ctx.float_texture(index, p.name);
   else texture = ctx.spectrum_texture(index, p.name);

@@ -81,6 +81,10 @@ class Binder {
       if (used_textures) used_textures->push_back({parameter, i});
       return std::dynamic_pointer_cast<Texture<float>>(scene_.textures[static_cast<size_t>(i)].plugin);
     };
+    ctx.texture_hint = [this](const std::string& texture) {
+      const auto found = description_.unknown_textures.find(texture);
+      return found == description_.unknown_textures.end() ? std::string() : found->second;
+    };
     ctx.spectrum_texture = [this, used_textures](int i, const std::string& parameter) {
       if (used_textures) used_textures->push_back({parameter, i});
       return std::dynamic_pointer_cast<Texture<RGB>>(scene_.textures[static_cast<size_t>(i)].plugin);
