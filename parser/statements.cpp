@@ -159,7 +159,8 @@ void note_foreign_plugin(const Statement& s, Reporter& reporter) {
     if (foreign.directive != directive) continue;
     const std::string plugin = plugin_of(s);
     if (!plugin.empty() && std::find(foreign.names.begin(), foreign.names.end(), plugin) != foreign.names.end())
-      reporter.foreign(s.where, "pbrt-v4", Severity::Warning,
+      // At the name, where whoever binds the plugin says that it is unknown.
+      reporter.foreign(s.names_at.back(), "pbrt-v4", Severity::Warning,
                        "pbrt-v3 has no " + std::string(directive) + " " + in_quotes(plugin));
   }
 }
