@@ -192,6 +192,7 @@ DisplayResult make_display_transform(const DisplaySpec& spec) {
                                 : config_view(path, spec, impl->processor, name, impl->views);
     impl->description = name + (path.empty() ? " (built-in)" : "") + stops_text(spec.exposure);
   } catch (const std::exception& e) {
+    result.bad_config = true;
     result.error = path.empty() ? fmt::format("OpenColorIO: {}", e.what())
                                 : fmt::format("OpenColorIO config \"{}\": {}", path, e.what());
   }

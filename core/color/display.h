@@ -51,6 +51,7 @@ class DisplayTransform {
 struct DisplayResult {
   std::unique_ptr<const DisplayTransform> transform;
   std::string error;
+  bool bad_config = false;  ///< The error is the config's, rather than of what is asked of it.
 };
 
 /// Makes the transform. The config is spec.config_path, else the file $OCIO names, else the built-in one. Errors: an

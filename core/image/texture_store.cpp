@@ -1,6 +1,7 @@
 #include "core/image/texture_store.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -257,6 +258,20 @@ void TextureStore::trim(ImageTexture::Source& source, int spare) {
   memory_->bytes += rest->bytes();
   source.pyramid = account(std::move(rest));
   ++trims_;
+}
+
+void TextureStore::read_all() {
+  std::vector<ImageTexture::Source*> sources;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& entry : sources_) sources.push_back(entry.second.get());
+  }
+  tbb::parallel_for(size_t{0}, sources.size(), [&](size_t i) {
+    ImageTexture::Source& source = *sources[i];
+    resident(source, 0);
+    const std::lock_guard lock(source.mutex);
+    source.pyramid.reset();
+  });
 }
 
 TextureStatistics TextureStore::statistics() const {

@@ -100,6 +100,9 @@ class TextureStore {
 
   TextureStatistics statistics() const;
 
+  /// Reads the pictures of all textures and keeps none: errors() then knows every one that cannot be decoded.
+  void read_all();
+
   /// True once a texture could not be decoded. Cheap, for a render to ask now and then.
   bool failed() const { return failed_.load(std::memory_order_relaxed); }
 

@@ -104,11 +104,7 @@ class Builder {
     prepare_camera();
     if (!options_complete()) return nullptr;
     const auto placed = Clock::now();
-    const std::string problem = scene_->accel->build();
-    if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
-    else
-      for_each(scene_->lights.size(),
-               [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
+    if (!options_.only_check) build_accel();
     scene_->sort_keys = static_cast<int>(keys_.size());
     scene_->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
                              seconds(placed, Clock::now())};
@@ -200,6 +196,15 @@ class Builder {
     for (auto& light : scene_->bound.area_lights) prepare(light);
     scene_->time_start = description().time_start;
     scene_->time_end = description().time_end;
+  }
+
+  void build_accel() {
+    if (const std::string problem = scene_->accel->build(); !problem.empty()) {
+      diagnostics_.error(description().world_begin, problem);
+      return;
+    }
+    for_each(scene_->lights.size(),
+             [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
   }
 
   // ---- Geometry ----

@@ -113,4 +113,17 @@ Diagnostics weigh_problems(const BoundScene& scene, const EffectPlan& plan) {
   return all;
 }
 
+Diagnostics find_surprises(const SceneDescription& description, const EffectPlan& plan) {
+  Diagnostics all;
+  if (description.has_media()) {
+    all.warning(description.first_medium(), "participating media are not simulated", "the picture is made without");
+  }
+  const EffectSet lights{Effect::AreaLights, Effect::EnvironmentLights, Effect::DeltaLights};
+  if ((plan.called_for & lights).empty()) {
+    all.warning(description.world_begin, "the scene has no lights, so the picture is black",
+                "add a LightSource, or an AreaLightSource before a shape that stands in the world");
+  }
+  return all;
+}
+
 }  // namespace whit

@@ -10,4 +10,8 @@ namespace whit {
 /// warnings that whit check calls errors (Diagnostic::excused).
 Diagnostics weigh_problems(const BoundScene& scene, const EffectPlan& plan);
 
+/// What is not wrong, but makes another picture than the scene's author may expect: media are not simulated, or there is
+/// no light.
+Diagnostics find_surprises(const SceneDescription& description, const EffectPlan& plan);
+
 }  // namespace whit

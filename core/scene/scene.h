@@ -96,6 +96,7 @@ struct BuildOptions {
   bool quick = false;  ///< pbrt's --quick: a quarter of the resolution, one sample.
   bool robust_traversal = true;
   bool keep_going = false;  ///< Build what is usable despite errors.
+  bool only_check = false;  ///< Only for what there is to say: nothing can be traced.
 };
 
 /// Where the time went that build_scene() took, in seconds.

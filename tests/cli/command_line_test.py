@@ -204,7 +204,8 @@ class Rendering(Case):
         self.assertTrue(err.endswith("0 errors, 1000 warnings\n"), err)
 
     def test_a_hundred_messages_are_shown(self):
-        names = "".join('  Texture "t%d" "color" "imagemap" "string filename" "%d.png"\n' % (i, i) for i in range(150))
+        names = "".join('  Texture "t%d" "color" "imagemap" "string filename" "%d.png" Material "matte" "texture Kd" "t%d" '
+                        'Shape "sphere"\n' % (i, i, i) for i in range(150))
         self.write("many.pbrt", SCENE.replace("  Shape", names + "  Shape"))
         code, _, err = self.whit("many.pbrt", "--quiet")
         self.assertEqual(code, 4)

@@ -359,9 +359,12 @@ class Differences(unittest.TestCase):
         self.assertIn('parameter "fov" of perspective is of type float, not integer', done.stderr)
 
     def test_missing_files(self):
-        self.refused(scene('Texture "t" "spectrum" "imagemap" "string filename" "nowhere.png"'), 4, "cannot open nowhere.png")
+        ball = ' LightSource "point" Translate 0 0 5 Shape "sphere"'
+        picture = 'Texture "t" "spectrum" "imagemap" "string filename" "nowhere.png"'
+        self.refused(scene(picture + ' Material "matte" "texture Kd" "t"' + ball), 4, "cannot open nowhere.png")
         self.refused(scene('LightSource "infinite" "string mapname" "nowhere.exr"'), 4, "cannot open nowhere.exr")
-        self.refused(scene('Material "metal" "spectrum eta" "nowhere.spd"'), 4, "cannot open nowhere.spd")
+        self.refused(scene('Material "metal" "spectrum eta" "nowhere.spd"' + ball), 4, "cannot open nowhere.spd")
+        self.render(scene(picture + ball), said="nothing that is seen depends on it")
 
     def test_degenerate_triangles(self):
         self.render(scene('''
@@ -417,7 +420,8 @@ class Differences(unittest.TestCase):
         self.assertEqual(sorted(os.listdir(self.folder)), ["s.exr", "s.pbrt", "s.png"])
 
     def test_ptex_is_refused(self):
-        text = 'WorldBegin\nTexture "t" "spectrum" "ptex" "string filename" ["s.pbrt"]\nWorldEnd\n'
+        text = ('WorldBegin\nTexture "t" "spectrum" "ptex" "string filename" ["s.pbrt"]\n'
+                'Material "matte" "texture Kd" "t" Shape "sphere"\nWorldEnd\n')
         with open(os.path.join(self.folder, "s.pbrt"), "w", encoding="utf-8") as f:
             f.write(text)
         done = self.run_whit("s.pbrt", "--quiet")
@@ -446,9 +450,11 @@ class Differences(unittest.TestCase):
         for statement, answer in (('Material "nosuch"', "matte is used instead"),
                                   ('LightSource "nosuch"', "the light is left out"),
                                   ('Shape "nosuch"', "the shape is left out"),
-                                  ('MakeNamedMedium "m" "string type" ["homogeneous"]', "the picture is made without")):
+                                  ('MakeNamedMedium "m" "string type" ["homogeneous"] MediumInterface "m" ""',
+                                   "the picture is made without")):
             self.render(scene(statement), said=answer)
-        self.refused(scene('Texture "t" "float" "nosuch"'), 3, 'error: unknown float texture "nosuch"')
+        self.refused(scene('Texture "t" "float" "nosuch" Material "matte" "texture sigma" "t" Shape "sphere"'), 3,
+                     'error: unknown float texture "nosuch"')
         self.refused(scene("", 'Camera "nosuch"'), 3, 'error: unknown camera "nosuch"')
 
     # ---- The page ----

@@ -96,9 +96,9 @@ TEST(PointSources, ErrorsAreReported) {
   for (const char* name : {"spot", "goniometric", "projection"}) {
     auto flat = make_plugin<Light>("light", name);
     flat->light_to_world = Mat4d().setScale(Vec3d(1, 1, 0));
+    EXPECT_TRUE(flat->is_delta());
     EXPECT_FALSE(flat.prepare());
     EXPECT_TRUE(flat.diagnostics.has_errors());
-    EXPECT_TRUE(flat->is_delta());
   }
 }
 

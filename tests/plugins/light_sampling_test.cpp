@@ -296,8 +296,8 @@ TEST(Environment, ABatchIsItsLanesOneByOne) {
 
 TEST(Environment, TexelCentresSeamAndPoles) {
   // At the centre of texel (x, y), theta = pi (y + 1/2)/8 and phi = 2 pi (x + 1/2)/16, the map is its texel; the seam
-  // at phi = 0 is the mean of the outer columns from both sides. At the poles the sky has the mean of its end row's
-  // two nearest texels; pbrt's infinite light takes the row at the other pole in.
+  // at phi = 0 is the mean of the outer columns from both sides. At the poles there is the mean of the end row's two
+  // nearest texels; pbrt's infinite light takes the row at the other pole in, which is no part of what is seen there.
   const MapFile file(16, 8, rough_sky);
   const auto sky = make_light("skybox", {file.parameter()}), infinite = make_light("infinite", {file.parameter()});
   for (const auto* light : {&sky, &infinite}) {
@@ -315,11 +315,10 @@ TEST(Environment, TexelCentresSeamAndPoles) {
     }
   }
   const RGB top = (rough_sky(15, 0) + rough_sky(0, 0)) * 0.5f, bottom = (rough_sky(15, 7) + rough_sky(0, 7)) * 0.5f;
-  expect_colour(escaped(*sky.plugin, {0, 0, 0}, {0, 0, 1}), top.x, top.y, top.z, 1e-5);
-  expect_colour(escaped(*sky.plugin, {0, 0, 0}, {0, 0, -1}), bottom.x, bottom.y, bottom.z, 1e-5);
-  const RGB both = (top + bottom) * 0.5f;
-  expect_colour(escaped(*infinite.plugin, {0, 0, 0}, {0, 0, 1}), both.x, both.y, both.z, 1e-5);
-  expect_colour(escaped(*infinite.plugin, {0, 0, 0}, {0, 0, -1}), both.x, both.y, both.z, 1e-5);
+  for (const auto* light : {&sky, &infinite}) {
+    expect_colour(escaped(*light->plugin, {0, 0, 0}, {0, 0, 1}), top.x, top.y, top.z, 1e-5);
+    expect_colour(escaped(*light->plugin, {0, 0, 0}, {0, 0, -1}), bottom.x, bottom.y, bottom.z, 1e-5);
+  }
 }
 
 TEST(Environment, ExtremeNumbersStayFinite) {

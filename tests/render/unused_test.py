@@ -68,16 +68,18 @@ class Unused(unittest.TestCase):
             self.assertLess(among_peak - among_parsed, alone_peak - alone_parsed + 0.05 * alone_peak + 1)
 
     def test_mistakes_in_it_are_found(self):
-        # Not used is no reason not to be checked.
+        # Not used is no reason not to be checked, and none to render nothing.
         text = self.scene.replace("WorldBegin\n", 'WorldBegin\nMakeNamedMaterial "unused" "string type" "mirror" '
                                   '"float Kr" [1]\nTexture "gone" "float" "imagemap" "string filename" "gone.png"\n', 1)
         scene = os.path.join(self.folder, "wrong.pbrt")
         with open(scene, "w", encoding="utf-8") as f:
             f.write(text)
-        done = subprocess.run([WHIT, scene], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 4, done.stderr)
-        self.assertRegex(done.stderr, r'warning: parameter "Kr" of mirror')
-        self.assertRegex(done.stderr, r"error: cannot open .*gone.png")
+        for command, code, severity in (("check", 1, "error"), ("render", 0, "warning")):
+            flags = ["--spp", "1", "--outfile", self.folder + "/wrong.exr", "--display", "none"] if code == 0 else []
+            done = subprocess.run([WHIT, command, scene, *flags], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertRegex(done.stderr, r'warning: parameter "Kr" of mirror')
+            self.assertRegex(done.stderr, severity + r": cannot open .*gone.png")
 
 
 if __name__ == "__main__":

@@ -58,10 +58,16 @@ PlannedScene plan_scene(const SceneDescription& description, const Sources& sour
   return out;
 }
 
-Diagnostics all_problems(const LoadedFile& file, const Sources& sources) {
+Diagnostics all_problems(const LoadedFile& file, const Sources& sources,
+                         const std::function<Diagnostics(PlannedScene)>& further) {
   Diagnostics all = file.parsed.diagnostics;
-  Diagnostics planning;
-  for (const SceneDescription& world : file.parsed.scenes) plan_scene(world, sources, planning);
+  Diagnostics planning, found;
+  for (const SceneDescription& world : file.parsed.scenes) {
+    PlannedScene planned = plan_scene(world, sources, planning);
+    // What is wrong explains what is surprising.
+    if (!all.has_errors() && !planning.has_errors()) planning.append(find_surprises(world, planned.plan));
+    if (further) found.append(further(std::move(planned)));
+  }
   for (const Diagnostic& d : planning.all()) {
     // One place, one message: the parser has said what is wrong there, planning only met the consequence.
     const auto same_place = [&](const Diagnostic& o) {
@@ -69,6 +75,7 @@ Diagnostics all_problems(const LoadedFile& file, const Sources& sources) {
     };
     if (std::none_of(all.all().begin(), all.all().end(), same_place)) all.add(d);
   }
+  all.append(found);
   return all;
 }
 

@@ -1,6 +1,7 @@
 // From a path to a planned scene: what render, check, explain and bench begin with.
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "core/scene/effect_plan.h"
@@ -25,8 +26,9 @@ struct PlannedScene {
 PlannedScene plan_scene(const SceneDescription& description, const Sources& sources, Diagnostics& diagnostics,
                         const PlanOptions& options = {});
 
-/// Everything wrong with a file: what parsing found, and what planning its worlds finds in addition. For files with
-/// mistakes, where nothing else will be done with the worlds.
-Diagnostics all_problems(const LoadedFile& file, const Sources& sources);
+/// Everything wrong with a file: what parsing found, and what planning its worlds finds in addition, and what `further`
+/// finds in each. For files with mistakes, where nothing else will be done with the worlds.
+Diagnostics all_problems(const LoadedFile& file, const Sources& sources,
+                         const std::function<Diagnostics(PlannedScene)>& further = {});
 
 }  // namespace whit

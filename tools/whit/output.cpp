@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <future>
 
+#include "tools/whit/commands.h"
+
 namespace whit {
 namespace {
 
@@ -24,9 +26,14 @@ std::string write_one(const std::string& path, const OutputImage& image, const W
   return result.error;
 }
 
+OutputProblem problem_of(SourcePos where, ErrorClass error_class, std::string message, int code) {
+  return {{Severity::Error, error_class, where, std::move(message), ""}, code};
+}
+
 }  // namespace
 
-std::string plan_output(const OutputRequest& request, const Film& film, OutputPlan& plan) {
+std::optional<OutputProblem> plan_output(const OutputRequest& request, const Bound<Film>& bound, OutputPlan& plan) {
+  const Film& film = *bound.plugin;
   plan.full_float = request.full_float;
   plan.main_file = !request.outfile.empty() ? request.outfile : film.file_name();
   if (plan.main_file.empty()) {
@@ -40,7 +47,10 @@ std::string plan_output(const OutputRequest& request, const Film& film, OutputPl
   }
   for (const std::string& path : {plan.main_file, plan.display_file}) {
     if (path.empty()) continue;
-    if (std::string problem = check_writable(path); !problem.empty()) return problem;
+    if (std::string problem = check_writable(path); !problem.empty()) {
+      const bool by_film = request.outfile.empty() && !film.file_name().empty() && path == plan.main_file;
+      return problem_of(by_film ? bound.where : SourcePos{}, ErrorClass::File, std::move(problem), kFileError);
+    }
   }
   DisplaySpec spec;
   spec.config_path = request.ocio;
@@ -48,7 +58,12 @@ std::string plan_output(const OutputRequest& request, const Film& film, OutputPl
   spec.exposure = static_cast<float>(request.exposure.value_or(film.exposure()));
   DisplayResult display = make_display_transform(spec);
   plan.display = std::move(display.transform);
-  return display.error;
+  if (display.error.empty()) return {};
+  const bool by_film = request.view.empty() && !film.view().empty();
+  return problem_of(by_film ? bound.where : SourcePos{}, ErrorClass::Scene, std::move(display.error),
+                    display.bad_config ? kFileError
+                    : by_film          ? kSceneError
+                                       : kUsage);
 }
 
 std::string write_output(const OutputPlan& plan, const Picture& picture, const std::vector<OutputMetadata>& metadata,

@@ -9,6 +9,7 @@
 #include "core/color/display.h"
 #include "core/image/write.h"
 #include "core/render/render.h"
+#include "core/scene/bound_scene.h"
 
 namespace whit {
 
@@ -29,8 +30,14 @@ struct OutputRequest {
   bool full_float = false;
 };
 
-/// Decides the names, checks that the files can be written and that the view exists. Returns "" or the error.
-std::string plan_output(const OutputRequest& request, const Film& film, OutputPlan& plan);
+/// What is wrong with a plan: at the Film statement if that asked for it, else without a place.
+struct OutputProblem {
+  Diagnostic diagnostic;
+  int exit_code = 0;
+};
+
+/// Decides the names, checks that the files can be written and that the view exists.
+std::optional<OutputProblem> plan_output(const OutputRequest& request, const Bound<Film>& film, OutputPlan& plan);
 
 /// Writes the files. Returns "" or the error; `notes` gets what should be said.
 std::string write_output(const OutputPlan& plan, const Picture& picture, const std::vector<OutputMetadata>& metadata,

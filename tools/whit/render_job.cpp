@@ -11,6 +11,7 @@
 #include <set>
 
 #include "core/render/debug_sample.h"
+#include "core/scene/problems.h"
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/render_report.h"
@@ -63,6 +64,18 @@ class RenderJob {
     return kDone;
   }
 
+  int refuse(const OutputProblem& problem) const {
+    if (problem.diagnostic.where.known()) {
+      Diagnostics d;
+      d.add(problem.diagnostic);
+      print_diagnostics(sources_, d);
+      log(d);
+    } else {
+      say("whit: " + problem.diagnostic.message);
+    }
+    return problem.exit_code;
+  }
+
   void log(const Diagnostics& d) const {
     if (settings_.log_dir.empty()) return;
     std::ofstream out(settings_.log_dir + "/whit.log", std::ios::app);
@@ -72,22 +85,16 @@ class RenderJob {
   int render_world(const SceneDescription& world) {
     Diagnostics diagnostics;
     PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
+    diagnostics.append(find_surprises(world, planned.plan));
     if (reported_whole_) diagnostics = {};  // All of it has been said.
     times_.plan = planned.seconds;
-    if (world.has_media()) {
-      diagnostics.warning(world.first_medium(), "participating media are not simulated", "the picture is made without");
-    }
     unread_.clear();
     for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);
     if (int code = report(diagnostics); code != kDone) return code;
     if (!planned.bound.film.plugin) return kSceneError;
 
     OutputPlan output;
-    if (std::string problem = plan_output(output_request(), *planned.bound.film.plugin, output); !problem.empty()) {
-      say("whit: " + problem);
-      const bool view = problem.rfind("unknown view", 0) == 0 || problem.rfind("view ", 0) == 0;
-      return view ? kUsage : kFileError;
-    }
+    if (const auto problem = plan_output(output_request(), planned.bound.film, output)) return refuse(*problem);
     for (const std::string& name : {output.main_file, output.display_file}) {
       if (name.empty() || written_.insert(name).second) continue;
       say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
