@@ -85,7 +85,8 @@ class RenderJob {
   int render_world(const SceneDescription& world) {
     Diagnostics diagnostics;
     PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
-    diagnostics.append(find_surprises(world, planned.plan));
+    // What is wrong explains what is surprising.
+    if (!diagnostics.has_errors()) diagnostics.append(find_surprises(world, planned.plan));
     if (reported_whole_) diagnostics = {};  // All of it has been said.
     times_.plan = planned.seconds;
     unread_.clear();
