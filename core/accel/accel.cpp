@@ -510,8 +510,21 @@ struct Accel::Impl {
   RTCScene new_scene() const {
     RTCScene scene = rtcNewScene(device);
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-    rtcSetSceneFlags(scene, robust ? kQueryFilter | RTC_SCENE_FLAG_ROBUST : kQueryFilter);
+    set_flags(scene, RTC_SCENE_FLAG_NONE);
     return scene;
+  }
+  void set_flags(RTCScene scene, RTCSceneFlags flags) const {
+    rtcSetSceneFlags(scene, robust ? flags | RTC_SCENE_FLAG_ROBUST : flags);
+  }
+  void commit() const {
+    for (size_t g = 1; g < groups.size(); ++g) rtcCommitScene(groups[g].scene);
+    rtcCommitScene(groups[kWorld].scene);
+  }
+  /// Of what Embree was asked since the last call; "" when all went well.
+  std::string problem() const {
+    const RTCError code = rtcGetDeviceError(device);
+    if (code == RTC_ERROR_NONE && error.empty()) return {};
+    return fmt::format("the ray tracer could not be built: {}", error.empty() ? "unknown error" : error);
   }
   GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha, const CurveView& curves = {}) {
     users.push_back(std::make_unique<GeometryUser>());
@@ -659,12 +672,21 @@ void Accel::Impl::sweep_moving() {
 }
 
 std::string Accel::build() {
-  for (size_t g = 1; g < impl_->groups.size(); ++g) rtcCommitScene(impl_->groups[g].scene);
-  rtcCommitScene(impl_->groups[kWorld].scene);
+  impl_->commit();
   impl_->sweep_moving();
-  const RTCError code = rtcGetDeviceError(impl_->device);
-  if (code == RTC_ERROR_NONE && impl_->error.empty()) return {};
-  return fmt::format("the ray tracer could not be built: {}", impl_->error.empty() ? "unknown error" : impl_->error);
+  return impl_->problem();
+}
+
+std::string Accel::watch_ends() {
+  for (const Impl::Group& group : impl_->groups) {
+    impl_->set_flags(group.scene, kQueryFilter);
+    const bool is_empty =
+        group.shape_count == 0 && (group.scene != impl_->groups[kWorld].scene || impl_->instance_group.empty());
+    // A scene is built anew when something in it is committed, and not for flags alone.
+    if (!is_empty) rtcCommitGeometry(rtcGetGeometry(group.scene, 0));
+  }
+  impl_->commit();
+  return impl_->problem();
 }
 
 template <int N>

@@ -94,6 +94,9 @@ class Accel {
 
   /// Builds the acceleration structures. Returns an error text, "" when all went well.
   std::string build();
+  /// To be called after build() when there are touched ends (RayEnd::touched): builds again, for rays that ask about
+  /// every triangle they meet. All rays get slower by it, so it is not done for lights that nothing touches.
+  std::string watch_ends();
 
   /// `coherent`: neighbouring rays are alike (camera rays). Decides the speed, and the rays' kind in a record.
   void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;

@@ -198,14 +198,6 @@ class Builder {
     scene_->time_end = description().time_end;
   }
 
-  void build_accel() {
-    if (const std::string problem = scene_->accel->build(); !problem.empty()) {
-      diagnostics_.error(description().world_begin, problem);
-      return;
-    }
-    for_each(scene_->lights.size(),
-             [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
-  }
 
   // ---- Geometry ----
 
@@ -593,6 +585,18 @@ class Builder {
       affine.push_back(to_affine(keys.back()));
     }
     scene_->accel->add_instance(group.accel_group, affine);
+  }
+
+  /// What touches lights is found by asking what was built, and needs another build only where something does.
+  void build_accel() {
+    std::string problem = scene_->accel->build();
+    if (problem.empty()) {
+      for_each(scene_->lights.size(),
+               [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
+      if (std::any_of(scene_->lights.begin(), scene_->lights.end(), [](const SceneLight& l) { return l.end.touched; }))
+        problem = scene_->accel->watch_ends();
+    }
+    if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
   }
 
   // ---- Everything else ----
