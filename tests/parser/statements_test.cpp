@@ -154,9 +154,9 @@ TEST(Statements, PluginsOfAnotherVersionAreAWarning) {
   // Something may stand in for them, as in pbrt-v3; other statements decide whether the file can be read.
   expect_only(
       Parsed("Sampler \"zsobol\"\nFilm \"rgb\"\n" + in_world("MakeNamedMaterial \"m\" \"string type\" \"conductor\"")),
-      Severity::Warning, 1, 1, "this is a pbrt-v4 file: pbrt-v3 has no Sampler \"zsobol\"");
+      Severity::Warning, 1, 9, "this is a pbrt-v4 file: pbrt-v3 has no Sampler \"zsobol\"");
   // pbrt-v4 has no WorldEnd.
-  expect_only(Parsed("Film \"rgb\"\nWorldBegin\nShape \"s\"\n"), Severity::Error, 1, 1, "this is a pbrt-v4 file");
+  expect_only(Parsed("Film \"rgb\"\nWorldBegin\nShape \"s\"\n"), Severity::Error, 1, 6, "this is a pbrt-v4 file");
   // One of each version.
   EXPECT_EQ(Parsed(in_world("Renderer \"s\"\nOption \"x\" 1\nVolume \"v\"")).all().size(), 2u);
 }

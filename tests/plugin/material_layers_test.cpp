@@ -118,7 +118,7 @@ TEST(Hair, OffsetComesFromV) {
 
 TEST(Fourier, NeedsItsFile) {
   EXPECT_TRUE(make_plugin<Material>("material", "fourier").diagnostics.has_errors());
-  auto wrong = make_plugin<Material>("material", "fourier", {test::text("bsdffile", __FILE__)});
+  auto wrong = make_plugin<Material>("material", "fourier", {test::text("bsdffile", WHIT_SOURCE_DIR "/README.md")});
   ASSERT_TRUE(wrong.good());
   EXPECT_FALSE(wrong.prepare());
   ASSERT_EQ(wrong.diagnostics.all().size(), 1u);
