@@ -521,8 +521,8 @@ void SceneBuilder::resolve_textures(ParameterList& list) {
       reference.spectrum_texture = look_up(spectrum_textures_, reference.name);
       if (reference.float_texture >= 0 || reference.spectrum_texture >= 0) continue;
       // An error when the statement is bound, unless nothing uses it.
-      scene().unknown_textures.try_emplace(
-          reference.name, suggest(reporter_, reference.name, float_textures_, spectrum_textures_));
+      scene().unknown_textures.try_emplace(reference.name,
+                                           suggest(reporter_, reference.name, float_textures_, spectrum_textures_));
     }
   }
 }

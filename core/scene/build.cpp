@@ -198,7 +198,6 @@ class Builder {
     scene_->time_end = description().time_end;
   }
 
-
   // ---- Geometry ----
 
   /// Reads the live shapes, on all threads, and sorts them into groups: 0 the world, then one per object, then one per
