@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "core/plugin/registry.h"
@@ -200,8 +201,33 @@ class Binder {
     scene_.film = bind_option<Film>(description_.film, "film", "image", {Severity::Error, nullptr, ""});
     scene_.filter = bind_option<Filter>(description_.filter, "filter", "box",
                                         {Severity::Warning, "box", "a box filter is used instead"});
+    check_filter_width();
     bind_sampler();
     bind_integrator();
+  }
+
+  /// The film keeps sums of tiles of 16 x 16 pixels, each with a border as wide as the filter (core/render/film_buffer.h),
+  /// and there are tiles as far around the picture. What that takes grows with the fourth power of the width.
+  void check_filter_width() {
+    if (!scene_.film.plugin || !scene_.filter.plugin) return;
+    constexpr double kTile = 16, kBytes = 32, kMostBytes = 4.0 * (1 << 30), kOrdinary = 8;
+    const Vec2i size = scene_.film.plugin->resolution();
+    const double x = static_cast<double>(scene_.filter.plugin->x_width);
+    const double y = static_cast<double>(scene_.filter.plugin->y_width);
+    const double tiles = std::ceil((size.x + 2 * x) / kTile) * std::ceil((size.y + 2 * y) / kTile);
+    const double bytes = tiles * (kTile + 2 * x) * (kTile + 2 * y) * kBytes;
+    if (std::max(x, y) <= kOrdinary || bytes <= kMostBytes) return;
+    const ParameterList& params = description_.filter.params;
+    const auto found = std::find_if(params.begin(), params.end(),
+                                    [&](const Parameter& p) { return p.name == (x >= y ? "xwidth" : "ywidth"); });
+    const SourcePos where = found == params.end() ? description_.filter.where
+                            : value_position_     ? value_position_(*found, 0)
+                                                  : found->values_at;
+    report({Severity::Error, ErrorClass::Scene, where,
+            fmt::format("a filter of radius {:g} takes {:.3g} GiB of memory for {} x {} pixels, of 4 at most",
+                        std::max(x, y), bytes / (1 << 30), size.x, size.y),
+            "filters reach half a pixel to a few pixels"});
+    scene_.filter.plugin.reset();
   }
 
   /// Those of the parameters that another plugin understands as well.

@@ -87,5 +87,34 @@ TEST(BoundScene, AnUnknownIntegratorIsSaidWithItsHintOnALineOfItsOwn) {
             "warning: a\n  b\n  c\n");
 }
 
+TEST(BoundScene, AFilterThatDoesNotFitIntoMemoryIsAMistakeAtItsPlace) {
+  const auto said_of = [](const std::string& filter) {
+    Sources sources;
+    const ParseResult parsed = parse_text(
+        sources, "test.pbrt",
+        "Film \"image\" \"integer xresolution\" 64 \"integer yresolution\" 64\n" + filter + "\nWorldBegin WorldEnd\n",
+        "");
+    Diagnostics said;
+    bind_scene(
+        parsed.scenes[0], [&](const Parameter& p, size_t i) { return value_position(sources, p, i); }, said);
+    std::string text;
+    for (const Diagnostic& d : said.all()) text += sources.render_diagnostic(d, false);
+    return text;
+  };
+  // Tiles of 16 x 16 with borders of 20: (104 / 16)^2 = 49 of 56 x 56 sums.
+  EXPECT_EQ(said_of("PixelFilter \"box\" \"float xwidth\" 20 \"float ywidth\" 20"), "");
+  // (64 + 2e5) / 16 = 12504 by 5 tiles of (16 + 2e5) x 17 sums of 32 bytes: 6.8e12 bytes. The figures to widths of 3e38
+  // must be as finite as this.
+  for (const char* width : {"1e5", "3e9", "3e38"}) {
+    for (const char* filter : {"box", "gaussian", "mitchell", "sinc", "triangle"}) {
+      const std::string said =
+          said_of(fmt::format("PixelFilter \"{}\" \"float ywidth\" .5 \"float xwidth\" {}", filter, width));
+      const size_t column = 49 + std::string(filter).size();
+      EXPECT_EQ(said.find(fmt::format("test.pbrt:2:{}: error: a filter of radius ", column)), 0u) << said;
+      EXPECT_NE(said.find(" GiB of memory for 64 x 64 pixels"), std::string::npos) << said;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace whit
