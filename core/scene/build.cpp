@@ -8,12 +8,14 @@
 #include <cmath>
 #include <map>
 #include <span>
+#include <unordered_set>
 
 #include "core/base/box.h"
 #include "core/scene/alpha.h"
 #include "core/scene/bake.h"
 #include "core/scene/coincidence.h"
 #include "core/scene/emitter_reach.h"
+#include "core/scene/far.h"
 #include "core/scene/huge.h"
 #include "core/scene/light_end.h"
 #include "core/scene/motion.h"
@@ -42,7 +44,8 @@ struct BakedShape {
 struct Group {
   std::vector<LoadedShape> shapes;
   RenderSpace space;
-  Box3d bounds, near;  ///< Of all, and without what is huge: floats are made for that.
+  Box3d bounds, near;  ///< Of all, and without what is huge or far: floats are made for that.
+  Horizon horizon;     ///< Of what stands in it.
   int accel_group = 0;
   bool moving_shape = false;  ///< Holds one shape in object space that moves by its own transform.
 };
@@ -92,6 +95,7 @@ class Builder {
         AccelOptions{.robust = options_.robust_traversal, .second_look = scene_->sampler().is_regular()});
     const auto start = Clock::now();
     load_groups();
+    leave_out_far_things();
     part_huge_triangles();
     const auto loaded = Clock::now();
     choose_world_space();
@@ -246,6 +250,87 @@ class Builder {
     }
   }
 
+  /// Whether what reaches so far cannot be kept; says so at its statement.
+  bool is_too_far(double extent, const Horizon& horizon, SourcePos where, const std::string& what) {
+    if (extent <= horizon.limit()) return false;
+    diagnostics_.warning(
+        where,
+        fmt::format("{} {:.3g} units away, more than {:g} times as far as what is nearest", what, extent, kFarthest),
+        "left out: numbers have not as many digits");
+    return true;
+  }
+
+  /// From where distances within a group are measured.
+  Vec3d middle_of(const Group& group) const { return &group == &groups_[0] ? eyes()[0] : Vec3d(0, 0, 0); }
+  Mat4d to_group_coordinates(const Group& group, const LoadedShape& shape) const {
+    return group.moving_shape ? Mat4d() : transform(description().shapes[shape.description].transform).start;
+  }
+
+  void add_shapes_to_horizon(Group& group) const {
+    // Scenes that are not so wide have no need to look at triangles.
+    constexpr double kWide = 1e6;
+    std::vector<double> extents(group.shapes.size());
+    tbb::parallel_for(size_t{0}, extents.size(), [&](size_t i) {
+      const LoadedShape& shape = group.shapes[i];
+      const Vec3d middle = middle_of(group);
+      extents[i] = extent_of(shape.bounds, middle);
+      if (extents[i] > kWide && !shape.mesh.indices.empty())
+        extents[i] = least_extent_of(shape.mesh, to_group_coordinates(group, shape), middle);
+    });
+    for (const double extent : extents) group.horizon.add(extent);
+  }
+
+  void leave_out_far_shapes(Group& group) {
+    group.bounds = {};
+    for (LoadedShape& shape : group.shapes) {
+      const Vec3d middle = middle_of(group);
+      const double extent = extent_of(shape.bounds, middle);
+      const SourcePos where = description().shapes[shape.description].where;
+      if (shape.mesh.indices.empty()) {
+        if (is_too_far(extent, group.horizon, where, "this shape reaches")) shape.bounds = {};
+      } else if (extent > group.horizon.limit()) {
+        const Mat4d m = to_group_coordinates(group, shape);
+        const size_t lost = leave_out_far(shape.mesh, m, middle, group.horizon.limit());
+        is_too_far(
+            extent, group.horizon, where,
+            fmt::format("{} triangle{} of this shape reach{}", lost, lost == 1 ? "" : "s", lost == 1 ? "es" : ""));
+        shape.bounds = shape.mesh.indices.empty() ? Box3d() : mesh_bounds(shape.mesh, m);
+      }
+      group.bounds.extendBy(shape.bounds);
+    }
+    std::erase_if(group.shapes, [](const LoadedShape& shape) { return shape.bounds.isEmpty(); });
+  }
+
+  /// Within objects first, for it is what is left of them that is placed in the world.
+  void leave_out_far_things() {
+    for (size_t g = groups_.size(); g-- > 0;) {
+      add_shapes_to_horizon(groups_[g]);
+      if (g > 0) leave_out_far_shapes(groups_[g]);
+    }
+    Group& world = groups_[0];
+    const Vec3d eye = middle_of(world);
+    const auto placed = [&](const Group& group, const TransformPair& t) {
+      return std::max(extent_of(t.start, group.bounds, eye), extent_of(t.end, group.bounds, eye));
+    };
+    const auto instance_extent = [&](const auto& instance) {
+      return placed(groups_[static_cast<size_t>(instance.object + 1)], transform(instance.transform));
+    };
+    for (size_t g : moving_[-1]) world.horizon.add(placed(groups_[g], moving_transform(groups_[g])));
+    for (const auto& instance : description().instances) world.horizon.add(instance_extent(instance));
+    leave_out_far_shapes(world);
+    for (size_t g : moving_[-1]) {
+      Group& group = groups_[g];
+      if (group.shapes.empty()) continue;
+      const SourcePos where = description().shapes[group.shapes[0].description].where;
+      const double extent = placed(group, moving_transform(group));
+      if (is_too_far(extent, world.horizon, where, "this shape moves")) group.shapes.clear(), group.bounds = {};
+    }
+    for (size_t i = 0; i < description().instances.size(); ++i) {
+      const auto& instance = description().instances[i];
+      if (is_too_far(instance_extent(instance), world.horizon, instance.where, "this instance is")) far_.insert(i);
+    }
+  }
+
   std::vector<Vec3d> eyes() const {
     const TransformPair camera = transform(description().camera_transform);
     return {camera.start.inverse().translation(), camera.end.inverse().translation()};
@@ -281,6 +366,7 @@ class Builder {
         things.push_back(transform_box(moving_transform(groups_[g]).start, groups_[g].bounds));
     }
     for (size_t i = 0; i < std::min(description().instances.size(), kMostInstances); ++i) {
+      if (far_.count(i) > 0) continue;
       const auto& instance = description().instances[i];
       things.push_back(
           transform_box(transform(instance.transform).start, groups_[static_cast<size_t>(instance.object + 1)].bounds));
@@ -294,11 +380,13 @@ class Builder {
     CloseUps world;
     for (const Box3d& thing : things) world.add(thing);
     for (const Vec3d& eye : eyes()) world.look_from(eye);
+    world.end_at(middle_of(groups_[0]), groups_[0].horizon.reach());
     world.sort();
     part_huge_triangles(groups_[0], world);
     const std::vector<std::vector<Mat4d>> all_places = places();
     for (size_t g = 1; g < groups_.size(); ++g) {
       CloseUps around;
+      around.end_at(middle_of(groups_[g]), groups_[g].horizon.reach());
       for (const LoadedShape& shape : groups_[g].shapes) around.add(shape.bounds);
       for (const Mat4d& place : all_places[g]) {
         if (groups_[g].bounds.isEmpty() || !world.may_make_huge(transform_box(place, groups_[g].bounds))) continue;
@@ -323,6 +411,7 @@ class Builder {
     });
     for (const LoadedShape& shape : group.shapes) {
       const bool is_mesh = !shape.mesh.positions.empty();
+      if (extent_of(shape.bounds, middle_of(group)) > group.horizon.reach()) continue;
       if (is_mesh || !around.is_dwarfed_by(shape.bounds)) group.near.extendBy(shape.bounds);
     }
     if (group.near.isEmpty()) group.near = group.bounds;
@@ -335,7 +424,11 @@ class Builder {
     double radius = 0;
     const auto include = [&](const Box3d& box) {
       if (box.isEmpty()) return;
-      for (const Vec3d& corner : corners_of(box)) radius = std::max(radius, (corner - scene_->space.origin).length());
+      double farthest = 0;
+      for (const Vec3d& corner : corners_of(box)) {
+        farthest = std::max(farthest, (corner - scene_->space.origin).length());
+      }
+      if (farthest < 2 * groups_[0].horizon.reach()) radius = std::max(radius, farthest);
     };
     include(groups_[0].near);
     for (size_t g : moving_[-1]) {
@@ -343,7 +436,9 @@ class Builder {
       include(transform_box(t.start, groups_[g].near));
       include(transform_box(t.end, groups_[g].near));
     }
-    for (const auto& instance : description().instances) {
+    for (size_t i = 0; i < description().instances.size(); ++i) {
+      if (far_.count(i) > 0) continue;
+      const auto& instance = description().instances[i];
       const Box3d& object = groups_[static_cast<size_t>(instance.object + 1)].near;
       const TransformPair t = transform(instance.transform);
       include(transform_box(t.start, object));
@@ -535,8 +630,10 @@ class Builder {
     scene_->instance_keys.reserve(description().instances.size());
     scene_->instances.reserve(description().instances.size());
     for (size_t g : moving_[-1]) place(groups_[g], keyframes(moving_transform(groups_[g])), description().world_begin);
-    for (const auto& instance : description().instances) {
+    for (size_t i = 0; i < description().instances.size(); ++i) {
+      const auto& instance = description().instances[i];
       if (description().is_singular(instance.transform)) continue;  // reported
+      if (far_.count(i) > 0) continue;
       const std::vector<Mat4d> keys = keyframes(transform(instance.transform));
       const Group& object = groups_[static_cast<size_t>(instance.object + 1)];
       place(object, keys, instance.where);
@@ -625,6 +722,15 @@ class Builder {
       if (!scene_->plan.light_live[i]) continue;
       prepare(light);
       if (!light.plugin) continue;
+      // Squares of distances up to here are within the range of floats.
+      constexpr double kFarthestLight = 1e18;
+      const std::optional<Vec3d> position = light.plugin->position();
+      if (position && !(position->length() < kFarthestLight)) {
+        diagnostics_.warning(light.where,
+                             fmt::format("this light is {:.3g} units away", position->length() / scene_->space.scale),
+                             "left out: floats cannot hold the square of that beside the rest of the scene");
+        continue;
+      }
       SceneLight entry;
       entry.light = light.plugin.get();
       entry.is_delta = light.plugin->is_delta();
@@ -683,6 +789,7 @@ class Builder {
   std::unique_ptr<Scene> scene_;
   std::vector<Group> groups_;
   std::map<int, std::vector<size_t>> moving_;  ///< Groups of moving shapes, by object (-1: the world).
+  std::unordered_set<size_t> far_;             ///< Instances that are left out.
   std::map<std::pair<int, int>, int> keys_;
   std::vector<std::pair<int, bool>> lit_shapes_;
   DegenerateTriangles degenerate_;

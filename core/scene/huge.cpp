@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "core/base/box.h"
+#include "core/scene/far.h"
 
 namespace whit {
 namespace {
@@ -85,9 +86,12 @@ size_t CloseUps::count_below(double size) const {
   return static_cast<size_t>(end - contents_.begin());
 }
 
+bool CloseUps::is_far(const Box3d& box) const { return extent_of(box, from_) > reach_; }
+
 bool CloseUps::makes_huge(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
   Box3d box(a);
   box.extendBy(b), box.extendBy(c);
+  if (is_far(box)) return true;
   const double size = size_of(box);
   const auto is_near = [&](const Vec3d& p, double reach) {
     return distance_to(box, p) <= reach && distance_to_triangle(a, b, c, p) <= reach;
@@ -107,9 +111,9 @@ bool CloseUps::makes_huge(const Vec3d& a, const Vec3d& b, const Vec3d& c) const 
 
 bool CloseUps::may_make_huge(const Box3d& mesh) const {
   const double size = size_of(mesh);
-  return count_below(size / kHuge) > 0 || std::any_of(eyes_.begin(), eyes_.end(), [&](const Vec3d& eye) {
-           return distance_to(mesh, eye) < size / kHuge;
-         });
+  return is_far(mesh) || count_below(size / kHuge) > 0 ||
+         std::any_of(eyes_.begin(), eyes_.end(),
+                     [&](const Vec3d& eye) { return distance_to(mesh, eye) < size / kHuge; });
 }
 
 bool CloseUps::is_dwarfed_by(const Box3d& box) const {

@@ -4,6 +4,7 @@
 // rest.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,8 @@ class CloseUps {
   void look_from(const Vec3d& eye) { eyes_.push_back(eye); }
   /// Something is there, of the box's size.
   void add(const Box3d& content);
+  /// Triangles that reach farther than this from a point are huge, whatever is beside them: core/scene/far.h.
+  void end_at(const Vec3d& from, double reach) { from_ = from, reach_ = reach; }
   /// To be called when all is added.
   void sort();
 
@@ -40,6 +43,10 @@ class CloseUps {
   /// How many are smaller than `size`.
   size_t count_below(double size) const;
 
+  bool is_far(const Box3d& box) const;
+
+  Vec3d from_{0, 0, 0};
+  double reach_ = std::numeric_limits<double>::infinity();
   std::vector<Vec3d> eyes_;
   std::vector<Content> contents_;
 };
