@@ -397,14 +397,13 @@ bool ShadowRays::meets_before_end(const GeometryUser& user, const ObjectPacket& 
   if (!Box3d(box.min - room, box.max + room).intersects(near)) return t < t_end;
   const SurfacePoint at = shape.surface(o + d * t);
   Mat4d to_render = shape.object_to_scene();
-  ShapeHit hit{at.p, at.dpdu.cross(at.dpdv), d, shape.scene_to_object(),
-               rounding_of_size(transform_box(to_render, box))};
+  ShapeHit hit{at.p, at.dpdu.cross(at.dpdv), d, shape.scene_to_object(), rounding_of_size(box, to_render)};
   if (instance != RTC_INVALID_GEOMETRY_ID) {
     const Mat4d placed = instance_to_render(world, instance, time);
     to_render = to_render * placed;
     hit.from_render = to_render.inverse();
     hit.error =
-        rounding_of_size(transform_box(to_render, box)) +
+        rounding_of_size(box, to_render) +
         2 * kRounding * (transform_point(to_render, at.p).length() + transform_point(placed, {0, 0, 0}).length());
   }
   return hit.hides(end_point(rays, lane), rays.end->error);

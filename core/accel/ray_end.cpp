@@ -1,5 +1,6 @@
 #include "core/accel/ray_end.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/accel/accel.h"
@@ -29,6 +30,16 @@ double root_near(const AnalyticShape& shape, const Vec3d& o, const Vec3d& d, dou
 Vec3d rounding_of(const Vec3d& v) {
   const auto half_ulp = [](double x) { return x == 0 ? 0 : std::ldexp(0x1p-24, std::ilogb(x)); };
   return {half_ulp(v.x), half_ulp(v.y), half_ulp(v.z)};
+}
+
+double rounding_of_size(const Box3d& object_box, const Mat4d& to_render) {
+  const Vec3d size = object_box.size();
+  double largest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Vec3d along(to_render[axis][0], to_render[axis][1], to_render[axis][2]);
+    largest = std::max(largest, size[axis] * along.length());
+  }
+  return largest * 0x1p-24;
 }
 
 Vec3d end_point(const RayLanes& rays, int lane) {

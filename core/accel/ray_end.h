@@ -16,7 +16,6 @@
 // lights trace rays as they are. Analytic shapes are double precision anyway.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "core/plugin/shape.h"
@@ -31,11 +30,9 @@ constexpr double kNearEnd = 1e-3;
 /// What rounding to a float moves coordinates by at most.
 Vec3d rounding_of(const Vec3d& v);
 
-/// What a float moves a shape's surface by whose box is this, when its radii and heights are floats.
-inline double rounding_of_size(const Box3d& box) {
-  const Vec3d size = box.size();
-  return std::max({size.x, size.y, size.z}) * 0x1p-24;
-}
+/// What a float moves a shape's surface by when its radii and heights are floats, under the transform to where that
+/// counts. By the shape's own box, for one around a turned shape is larger.
+double rounding_of_size(const Box3d& object_box, const Mat4d& to_render);
 
 /// What the shadow rays of one call end on.
 struct RayEnd {

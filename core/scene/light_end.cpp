@@ -29,7 +29,7 @@ RayEnd end_on_shape(const Accel& accel, const AnalyticShape& shape, const SceneL
   // The back of a two-sided light is seen past its front.
   if (!light.two_sided) end.unshaded_by = light.shape;
   const Box3d box = transform_box(shape.object_to_scene(), shape.object_bounds());
-  end.error = Vec3d(rounding_of_size(box));
+  end.error = Vec3d(rounding_of_size(shape.object_bounds(), shape.object_to_scene()));
   end.touched = accel.is_touched(box, nullptr);
   return end;
 }

@@ -60,7 +60,7 @@ TEST(Hard, LightsOnSurfaces) {
   HardCase worst(
       {19, "a wall lit by a light that lies on a surface, or by a lamp that stands on one",
        "4 lights at a point, 5 lamps; on planes along the axes and tilted, disks, spheres, a cube's edge and "
-       "corner; 4 transforms",
+       "corner, and instances of these; 4 transforms",
        "relative error against the picture without the surface", 1e-4, "ends shadow rays at 0.9999 of the way"});
   std::vector<std::string> lights;
   for (const char* kind : {"point", "goniometric", "spot"}) {
@@ -76,7 +76,7 @@ TEST(Hard, LightsOnSurfaces) {
       area_light("Rotate -90 1 0 0 Shape \"cylinder\" \"float radius\" .05 \"float zmin\" 0 \"float zmax\" .1"));
   lights.push_back(area_light("Rotate -90 1 0 0 Shape \"disk\" \"float radius\" .05"));
   const std::string black = "Material \"matte\" \"rgb Kd\" [0 0 0]\n";
-  const std::vector<std::string> surfaces{
+  std::vector<std::string> surfaces{
       quad("-1 0 -.1  -1 0 .05  1 0 .05  1 0 -.1"),
       // Through the origin; turned by what a float's cosine of 90 degrees is off.
       quad("-1 1.74846e-7 -.1  -1 1.74846e-7 .1  1 -1.74846e-7 .1  1 -1.74846e-7 -.1"),
@@ -84,6 +84,18 @@ TEST(Hard, LightsOnSurfaces) {
       "AttributeBegin Translate 0 -.3 0 " + ball(.3) + "AttributeEnd\n",
       "AttributeBegin Translate 0 -.3 .3 " + cube(.3) + "AttributeEnd\n",
       "AttributeBegin Translate .3 -.3 .3 " + cube(.3) + "AttributeEnd\n"};
+  // An object has both the transform of its definition and that of its place, so it is defined outside of the world's.
+  const auto instance = [&](const std::string& shape, const std::string& place) {
+    return "AttributeBegin Identity ObjectBegin \"o\" " + black + shape + "ObjectEnd AttributeEnd AttributeBegin " +
+           place + " ObjectInstance \"o\" AttributeEnd\n";
+  };
+  const std::string floor = surfaces[0];
+  const std::vector<std::string> instances{
+      instance(floor, ""), instance("Rotate 40 1 2 3 Scale .01 .01 .01 " + floor, "Scale 100 100 100 Rotate -40 1 2 3"),
+      // Mirrored and made wider along its normal, which leaves it what it is.
+      instance(floor, "Scale -1 7 1"), instance(cube(.3), "Translate 0 -.3 .3"),
+      instance(ball(.3), "Translate 0 -.3 0")};
+  surfaces.insert(surfaces.end(), instances.begin(), instances.end());
   for (const Moved& moved : kMoves) {
     for (size_t l = 0; l < lights.size(); ++l) {
       const Rendered alone(wall_scene(moved, lights[l]));
