@@ -173,7 +173,9 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
   const ShadowRays* shadow = shadow_of(args->context);
-  if (shadow && shadow->rays.end->unshaded_by == user.unshaded_by_itself) return;
+  const int unshaded_by =
+      shadow ? shadow->rays.end->unshaded_by : static_cast<const QueryContext*>(args->context)->unshaded_by;
+  if (unshaded_by == user.unshaded_by_itself) return;
   const auto stands = [&](const ObjectPacket& packet, int k) {
     const auto lane = static_cast<unsigned>(packet.lane[k]);
     return !shadow || shadow->meets_before_end(user, packet, k, RTCRayN_id(args->ray, args->N, lane),

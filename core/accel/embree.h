@@ -36,6 +36,7 @@ constexpr RTCSceneFlags kQueryFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 /// What Embree hands on to callbacks: its own context, and behind it ours.
 struct QueryContext : EmbreeContext {
   const void* shadow = nullptr;  ///< Of occlusion queries that know what their rays end on: a ShadowRays of accel.cpp.
+  int unshaded_by = -1;          ///< The same as RayEnd::unshaded_by, for rays that know no more than that.
 };
 
 /// One thread's queries with one coherence hint. trace() finds nearest hits for RTCRayHit and its packets, and
@@ -52,6 +53,8 @@ class EmbreeQuery {
     rtcInitRayQueryContext(&context_);
     intersect_.context = occluded_.context = &context_;
   }
+  /// The analytic shape that does not hide its own points from the rays of this query; -1 for none.
+  void set_unshaded_by(int shape) { context_.unshaded_by = shape; }
   /// Hands `shadow` to the callbacks of occlusion queries, and has hits of triangles asked of a filter unless it is null.
   void set_shadow(const void* shadow, RTCFilterFunctionN filter) {
     context_.shadow = shadow;
@@ -76,6 +79,7 @@ class EmbreeQuery {
     rtcInitIntersectContext(&context_);
     context_.flags = coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
   }
+  void set_unshaded_by(int shape) { context_.unshaded_by = shape; }
   void set_shadow(const void* shadow, RTCFilterFunctionN filter) {
     context_.shadow = shadow;
     context_.filter = filter;

@@ -23,6 +23,7 @@ void RayRecord::add(RayKind kind, const RayLanes& rays) {
     ++added;
   }
   to.batches.push_back(added);
+  to.unshaded_by.push_back(rays.end ? rays.end->unshaded_by : -1);
 }
 
 class Replay {
@@ -36,8 +37,9 @@ class Replay {
   template <unsigned N, class Packet>
   void run() {
     size_t first = 0;
-    for (const int32_t batch : rays_.batches) {
-      const size_t end = first + static_cast<size_t>(batch);
+    for (size_t b = 0; b < rays_.batches.size(); ++b) {
+      const size_t end = first + static_cast<size_t>(rays_.batches[b]);
+      query_.set_unshaded_by(rays_.unshaded_by[b]);
       for (; first < end; first = std::min(first + N, end)) trace<N, Packet>(first, std::min<size_t>(N, end - first));
     }
   }

@@ -23,7 +23,8 @@ class RayRecord {
   friend class Replay;
   struct Rays {
     std::vector<float> ox, oy, oz, dx, dy, dz, tfar, time;
-    std::vector<int32_t> batches;  ///< Their sizes: packets do not reach over a batch's end.
+    std::vector<int32_t> batches;      ///< Their sizes: packets do not reach over a batch's end.
+    std::vector<int32_t> unshaded_by;  ///< By batch: the light that its shadow rays end on, see RayEnd.
   };
   Rays& of(RayKind kind) { return rays_[static_cast<size_t>(kind)]; }
   const Rays& of(RayKind kind) const { return rays_[static_cast<size_t>(kind)]; }

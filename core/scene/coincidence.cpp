@@ -354,6 +354,9 @@ class Finder {
     });
   }
 
+  /// Where a large mesh stands on something nothing is cut away: a test at every hit of it would cost more than it mends.
+  bool is_large(int shape) const { return parts(shapes_[static_cast<size_t>(shape)]) > kSmallMesh; }
+
   bool is_exact(int shape) const { return !mesh_of(shape).exact.empty(); }
 
   /// Whether a solid's face lies in `other` without being seen: its outer side is away from who looks, or where that is
@@ -402,6 +405,7 @@ class Finder {
       else of_lower.insert(i);
       any |= !upper_stands && !lower_stands;
     });
+    if (!any && (is_large(lower) || is_large(upper))) return false;
     cut_triangles(upper, us, of_upper, lower, ls);
     cut_triangles(lower, ls, of_lower, upper, us);
     return any;
@@ -418,7 +422,7 @@ class Finder {
       if (!flat.coincides(t)) continue;
       const bool on_it = stands(of_mesh, t, other, flat.normal(), false);
       any |= !on_it;
-      if (on_it ? !has_alpha(other) : l.mesh && !has_alpha(other)) cut(of_mesh).add(analytic);
+      if (on_it ? !is_large(of_mesh) && !has_alpha(other) : l.mesh && !has_alpha(other)) cut(of_mesh).add(analytic);
       else if (l.analytic && !has_alpha(of_mesh)) cut(lower).add_everywhere(t);
     }
     return any;
