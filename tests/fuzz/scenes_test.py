@@ -15,6 +15,7 @@ import os
 import random
 import re
 import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -22,7 +23,8 @@ import tempfile
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 WHIT = os.environ.get("WHIT", os.path.join(ROOT, "build", "release", "whit"))
 FOLDERS = ("scenes", "scenes/analytic", "tests/conformance/scenes", "tests/field")
-SECONDS = 10  # a hang
+SECONDS = 10  # of CPU: a hang
+WAIT = 120  # seconds by the clock: a hang that does nothing, on however busy a machine
 MEMORY = 6 << 30  # of addresses: what a mutated resolution or count asks for must not bring the machine down
 
 TOKEN = re.compile(rb'"[^"\n]*"|#[^\n]*|[\[\]]|[^\s"\[\]#]+|\s+|.', re.S)
@@ -187,6 +189,7 @@ def is_finite(path):
 def limit():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
 
 
 def run(number, scenes, keep):
@@ -205,14 +208,16 @@ def run(number, scenes, keep):
         problem, code = "", None
         try:
             done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                  timeout=SECONDS, preexec_fn=limit, check=False)
+                                  timeout=WAIT, preexec_fn=limit, check=False)
             code = done.returncode
-            if not 0 <= code <= 5:
+            if code in (-signal.SIGXCPU, -signal.SIGKILL):
+                problem = "still running after %d CPU seconds" % SECONDS
+            elif not 0 <= code <= 5:
                 problem = "exit code %d: %s" % (code, done.stderr[-300:].decode(errors="replace"))
             elif code == 0 and not os.path.exists(picture):
                 problem = "exit code 0, and no picture"
         except subprocess.TimeoutExpired:
-            problem = "still running after %d s" % SECONDS
+            problem = "still running after %d s" % WAIT
         if not problem and os.path.exists(picture) and not is_finite(picture):
             problem = "the picture has a number that is none"
         if keep and (problem or keep.everything):
