@@ -306,11 +306,8 @@ bool ParameterReader::read_bare(const Token& value, Parameter& out) {
 }
 
 bool ParameterReader::check_list(Parameter& out) {
+  if (out.is_empty()) return true;  // Whether that is a mistake depends on the parameter.
   const size_t numbers = out.numbers().size();
-  if (numbers + out.integers().size() + out.bools().size() + out.strings().size() + out.textures().size() == 0) {
-    reporter_.warning(out.values_at, title(out) + " has an empty list of values", "the parameter is ignored");
-    return false;
-  }
   const size_t each = numbers_a_value(out.type);
   if (numbers % each != 0) {
     std::string message = title(out) + " has " + std::to_string(numbers) + (numbers == 1 ? " number" : " numbers");

@@ -59,6 +59,9 @@ struct Parameter {
   const std::vector<uint8_t>& bools() const { return get<uint8_t>(); }
   const std::vector<std::string>& strings() const { return get<std::string>(); }
   const std::vector<TextureRef>& textures() const { return get<TextureRef>(); }
+  bool is_empty() const {
+    return std::visit([](const auto& v) { return v.empty(); }, values);
+  }
 
  private:
   template <class T>

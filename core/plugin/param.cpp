@@ -74,10 +74,6 @@ enum class Count { None, One, Several };
 /// Counts values of `numbers_each` numbers. None and incomplete values are errors; several warn, and the default
 /// holds, because pbrt-v3 looks only at parameters with exactly one value.
 Count count_values(const Parameter& p, const BindContext& ctx, size_t numbers, size_t numbers_each = 1) {
-  if (numbers == 0) {
-    fail(ctx, p.values_at, called(p, ctx) + " has no value");
-    return Count::None;
-  }
   if (numbers % numbers_each != 0) {
     fail(ctx, p.values_at,
          called(p, ctx) + " has " + std::to_string(numbers) + " numbers, not a multiple of " +

@@ -116,6 +116,7 @@ struct ParamSpec {
   std::string doc;
   std::vector<std::string> choices;  ///< Of a Choice, else empty.
   bool is_file = false;              ///< Its value is the path of a file.
+  bool is_list = false;              ///< It takes any number of values, none too.
   /// Stores the parameter's value into the plugin, which must be of the class the spec was declared for.
   /// Reports errors; returns false after an error.
   std::function<bool(Plugin& plugin, const Parameter&, const BindContext&)> bind;
@@ -129,6 +130,11 @@ struct Binding {
   static std::vector<ParamType> accepts();
   static std::string to_text(const T& value);
   static bool read(const Parameter& p, const BindContext& ctx, const Range& range, T& out);
+};
+
+template <class T>
+inline constexpr bool kIsList = requires(const T& value) {
+  value.values.size();
 };
 
 bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<std::string>& choices, Choice& out);
@@ -173,6 +179,7 @@ DeclaredParam<Class, T> declare(T Class::*member, const char* name, T default_va
   d.spec.range = range;
   d.spec.doc = doc;
   d.spec.is_file = std::is_same_v<T, FileName>;
+  d.spec.is_list = kIsList<T>;
   d.spec.bind = [member, range](Plugin& plugin, const Parameter& p, const BindContext& ctx) {
     return Binding<T>::read(p, ctx, range, static_cast<Class&>(plugin).*member);
   };

@@ -61,10 +61,19 @@ void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parame
                            used);
 }
 
+void warn_empty(const PluginInfo& info, const Parameter& p, const BindContext& ctx) {
+  ctx.diagnostics->warning(p.values_at, "parameter \"" + p.name + "\" of " + info.name + " has an empty list of values",
+                           "the parameter is ignored");
+}
+
 /// Binds one parameter, or says why not. False after an error.
 bool bind_parameter(const PluginInfo& info, Plugin& plugin, const Parameter& p, const BindContext& ctx,
                     const std::vector<const PluginInfo*>& also_known) {
   const ParamSpec* spec = info.find_param(p.name);
+  if (spec && accepts(*spec, p.type) && p.is_empty()) {
+    if (!spec->is_list) warn_empty(info, p, ctx);  // A list of nothing is as good as none.
+    return true;
+  }
   if (spec && accepts(*spec, p.type)) return spec->bind(plugin, p, ctx);
   if (known_elsewhere(p, also_known, /*any_type=*/!spec)) return true;
   if (spec) warn_wrong_type(info, *spec, p, ctx);

@@ -30,6 +30,11 @@ class Binder {
   }
 
   BoundScene run() {
+    // There may be many, and a vector that grows takes three times as much for a moment.
+    scene_.textures.reserve(description_.textures.size());
+    scene_.materials.reserve(description_.materials.size());
+    scene_.shapes.reserve(description_.shapes.size());
+    scene_.shape_material.reserve(description_.shapes.size());
     bind_textures();
     bind_materials();
     bind_options();

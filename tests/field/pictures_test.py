@@ -82,6 +82,7 @@ class Pictures(unittest.TestCase):
         # The sphere under 20 W/sr at 4, Kd 0.5: 0.5 / pi * 20 / 16 = 0.199 in the middle.
         picture, said = self.render("empty-mesh.pbrt")
         self.assertAlmostEqual(picture[19:21, 19:21].mean(), 0.199, delta=2e-3)
+        self.assertEqual(said.count("warning:"), 1, said)
         self.assertIn("warning: trianglemesh has no triangles", said)
         self.assertIn("left out", said)
 

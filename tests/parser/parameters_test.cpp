@@ -98,9 +98,11 @@ TEST(Parameters, WavelengthsAreSorted) {
 }
 
 TEST(Parameters, EmptyList) {
+  // Whether it may be empty is the plugin's business.
   const Parsed parsed = shape("\"float r\" [ ] \"float q\" 1");
-  expect_only(parsed, Severity::Warning, 2, 21, "empty list");
-  EXPECT_EQ(parsed.scene().shapes[0].params.size(), 1u);
+  EXPECT_TRUE(parsed.all().empty()) << parsed.messages();
+  ASSERT_EQ(parsed.scene().shapes[0].params.size(), 2u);
+  EXPECT_TRUE(parsed.scene().shapes[0].params[0].is_empty());
 }
 
 struct Mistake {

@@ -207,8 +207,17 @@ TEST_F(Binding, RangesAndFiniteness) {
 }
 
 TEST_F(Binding, NumberOfValues) {
-  fails(numbers(ParamType::Float, "f", {}), "error@20: \"f\" of everything has no value");
   plugin.f = 1.5f;
+  for (const Parameter& none : {numbers(ParamType::Float, "f", {}), numbers(ParamType::Spectrum, "colour", {}),
+                                numbers(ParamType::Rgb, "ts", {}), make<int32_t>(ParamType::Integer, "i", {}),
+                                strings("mode", {}), numbers(ParamType::Point3, "point", {})}) {
+    warns(none, "warning@20: parameter \"" + none.name +
+                    "\" of everything has an empty list of values / the parameter is ignored");
+  }
+  EXPECT_EQ(plugin.f, 1.5f);
+  // A list may be empty: whether it is missed is its plugin's business.
+  warns(numbers(ParamType::Float, "floats", {}), "");
+  EXPECT_FALSE(plugin.floats.given);
   // pbrt-v3's FindOneFloat looks only at parameters with exactly one value.
   warns(numbers(ParamType::Float, "f", {2, 3}),
         "warning@20: \"f\" of everything takes one value, not 2 / the parameter is ignored, as in pbrt-v3");
