@@ -99,6 +99,7 @@ class Needed {
 
 Diagnostics weigh_problems(const BoundScene& scene, const EffectPlan& plan) {
   Diagnostics all;
+  if (scene.problems.empty()) return all;  // As nearly always: nobody needs to know what a million shapes depend on.
   const Needed needed(scene, plan);
   for (const Problem& p : scene.problems) {
     Diagnostic d = p.diagnostic;
