@@ -24,4 +24,10 @@ inline Box3d transform_box(const Mat4d& m, const Box3d& box) {
   return out;
 }
 
+/// The largest absolute value of each coordinate in a box.
+inline Vec3d farthest_of(const Box3d& box) {
+  const auto farther = [&](int k) { return std::max(std::abs(box.min[k]), std::abs(box.max[k])); };
+  return {farther(0), farther(1), farther(2)};
+}
+
 }  // namespace whit

@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/batch/lanes.h"
+#include "core/batch/arena.h"
 #include "core/plugin/light_reach.h"
 #include "core/plugin/param.h"
 
@@ -14,6 +14,7 @@ namespace whit {
 struct LightSamples {
   int n = 0;
   // In.
+  Arena* arena = nullptr;                  ///< Scratch.
   Vec3Lanes p;                             ///< Reference points.
   const float *u = nullptr, *v = nullptr;  ///< Uniform numbers in [0,1); null for a delta light.
   // Out.
@@ -21,6 +22,14 @@ struct LightSamples {
   float* distance = nullptr;  ///< Along wi to the sampled point; infinity for lights at infinity.
   RGBLanes radiance;          ///< Incident radiance divided by pdf; 0 where the light does not reach p.
   Vec3Lanes q;                ///< Unless null: the sampled points. Of emitting triangles only.
+  float* pdf = nullptr;       ///< Unless null: per solid angle at p; 0 where there is no radiance. Of delta lights 1.
+};
+
+/// What a ray has met that may emit; render space.
+struct LightHit {
+  Vec3f o, d;   ///< The ray; d is a unit vector.
+  float t = 0;  ///< How far along it.
+  Vec3f p, ng;  ///< The point and the unit normal there, which points to the front.
 };
 
 class Light : public Plugin {
@@ -41,11 +50,17 @@ class Light : public Plugin {
 
   /// Lights at infinity are seen by rays that leave the scene.
   virtual bool is_environment() const { return false; }
+  /// Surfaces that emit are seen by rays that meet them: the radiance that goes back along the ray.
+  virtual RGB emitted(const LightHit&) const { return RGB(0.0f); }
+  /// Whether such a surface has two fronts.
+  virtual bool is_two_sided() const { return false; }
   /// Adds the radiance arriving along n escaped rays (origin o, unit direction d, render space) to out.
   virtual void add_escaped(int /*n*/, const Vec3Lanes& /*o*/, const Vec3Lanes& /*d*/, const RGBLanes& /*out*/) const {}
   /// Density (solid angle) with which sample() would choose unit direction d from point p: for tests and
   /// multiple importance sampling. 0 for delta lights.
   virtual float pdf(const Vec3f& /*p*/, const Vec3f& /*d*/) const { return 0; }
+  /// The same from a ray's origin for the direction in which it met the light's surface.
+  virtual float pdf(const LightHit& hit) const { return pdf(hit.o, hit.d); }
   /// Where sample() finds light. Asked after prepare(); the default rules nothing out.
   virtual LightReach reach() const { return {}; }
   /// The point of render space from which all its light comes, if there is one. Asked after prepare().

@@ -167,6 +167,14 @@ ShapeSample AnalyticShape::sample_from(const Vec3d& ref, double u0, double u1) c
   return s;
 }
 
+double AnalyticShape::density_from(const Vec3d& ref, const Vec3d& p) const {
+  const SurfacePoint at = surface(transform_point(scene_to_object_, p));
+  const Vec3d area = transform_area(object_to_scene_, at.dpdu.cross(at.dpdv).normalized()), to = p - ref;
+  const double distance2 = to.length2(), projected = std::abs(area.dot(to));
+  const double pdf = sample_area(0.5, 0.5).pdf * distance2 * std::sqrt(distance2) / projected;
+  return std::isfinite(pdf) && pdf > 0 ? pdf : 0;
+}
+
 void AnalyticShape::sample_lanes(const ShapeSampleLanes& s) const {
   for (int i = 0; i < s.n; ++i) {
     const Vec3d ref(s.ref[i]);

@@ -167,6 +167,9 @@ class AnalyticShape : public Shape {
   /// exact Jacobian of the placement; the sphere samples its cone.
   virtual ShapeSample sample_from(const Vec3d& ref, double u0, double u1) const;
 
+  /// The density of sample_from(ref) at a point p of the placed surface: per solid angle at ref.
+  virtual double density_from(const Vec3d& ref, const Vec3d& p) const;
+
   /// sample_from() for a batch; by default one by one.
   virtual void sample_lanes(const ShapeSampleLanes& s) const;
 

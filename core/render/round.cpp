@@ -254,13 +254,13 @@ void Round::add_emitted() {
   const StageScope stage(worker_.clock(), Stage::LightSampling);
   if (!scene_.plan.live(Effect::AreaLights)) return;
   for (int i = 0; i < hits_.n; ++i) {
-    const int e = scene_.shapes[static_cast<size_t>(hits_.shape[i])].emission;
-    if (e < 0) continue;
-    const Emission& emission = scene_.emissions[static_cast<size_t>(e)];
-    if (emission.two_sided || dot(points_.ng[i], points_.wo[i]) > 0) {
-      radiance_.set(i, radiance_[i] + emission.radiance);
-      if (worker_.log) worker_.log->emitted(*this, i, emission.radiance);
-    }
+    const SceneShape& shape = scene_.shapes[static_cast<size_t>(hits_.shape[i])];
+    if (shape.emitter < 0) continue;
+    const Light& light = *scene_.emitters[static_cast<size_t>(shape.emitter)];
+    const RGB radiance = light.emitted({hits_.o[i], hits_.d[i], hits_.t[i], points_.p[i], points_.ng[i]});
+    if (is_black(radiance)) continue;
+    radiance_.set(i, radiance_[i] + radiance);
+    if (worker_.log) worker_.log->emitted(*this, i, radiance);
   }
 }
 

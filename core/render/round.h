@@ -40,9 +40,6 @@ class Round final : public RayRound {
   bool needs_numbers() const;
   SampleKeys make_keys() const;
   bool leaves_dark(const SceneLight& light);
-  void sample_emitter(const SceneLight& light, const LightSamples& samples) const;
-  void sample_triangle(const SceneLight& light, const LightSamples& samples) const;
-  void sample_analytic(const SceneLight& light, const LightSamples& samples) const;
   void scatter(const LightSamples& samples, const RGBLanes& f);
   void add_unshadowed(const SceneLight& light, const LightSamples& samples, const RGBLanes& contribution);
 

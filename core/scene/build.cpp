@@ -14,7 +14,7 @@
 #include "core/scene/alpha.h"
 #include "core/scene/bake.h"
 #include "core/scene/coincidence.h"
-#include "core/scene/emitter_reach.h"
+#include "core/scene/emitter.h"
 #include "core/scene/far.h"
 #include "core/scene/huge.h"
 #include "core/scene/light_end.h"
@@ -540,8 +540,8 @@ class Builder {
     }
     shape.unit = static_cast<float>(group.space.scale);
     shape.sort_key = sort_key(shape, index);
-    shape.emission = group.moving_shape ? -1 : emission_of(d, shape);
-    if (shape.curves && shape.emission >= 0) {
+    const std::optional<Emission> emission = group.moving_shape ? std::nullopt : emission_of(d, shape);
+    if (shape.curves && emission) {
       diagnostics_.warning(d.where, "a curve cannot light other surfaces", "it glows, and that is all");
     }
     if (group.moving_shape && d.area_light >= 0) {
@@ -550,7 +550,7 @@ class Builder {
     }
     plugins_.push_back(&plugin);
     scene_->shapes.push_back(shape);
-    if (shape.emission >= 0) lit_shapes_.push_back({index, group.accel_group == Accel::kWorld});
+    if (emission) lit_shapes_.push_back({index, group.accel_group == Accel::kWorld, *emission});
   }
 
   /// Hands a group's shapes, those from `first` on, to the ray tracer.
@@ -617,12 +617,11 @@ class Builder {
     return keys_.try_emplace({shape.material, kind}, static_cast<int>(keys_.size())).first->second;
   }
 
-  int emission_of(const ShapeDescription& d, const SceneShape& shape) {
+  std::optional<Emission> emission_of(const ShapeDescription& d, const SceneShape& shape) const {
     const AreaLight* light = scene_->bound.emission_of(d);
-    if (!light || !scene_->plan.needed.has(Effect::AreaLights)) return -1;
+    if (!light || !scene_->plan.needed.has(Effect::AreaLights)) return {};
     // A curve always faces the ray, so it has no back that could be dark.
-    scene_->emissions.push_back({light->radiance(), light->two_sided() || shape.curves != nullptr});
-    return static_cast<int>(scene_->emissions.size()) - 1;
+    return Emission{light->radiance(), light->two_sided() || shape.curves != nullptr};
   }
 
   void place_instances() {
@@ -731,38 +730,39 @@ class Builder {
                              "left out: floats cannot hold the square of that beside the rest of the scene");
         continue;
       }
-      SceneLight entry;
-      entry.light = light.plugin.get();
-      entry.is_delta = light.plugin->is_delta();
-      if (scene_->plan.direct_light) add_light(entry);
+      if (scene_->plan.direct_light) add_light({.light = light.plugin.get()});
       if (light.plugin->is_environment()) scene_->environments.push_back(light.plugin.get());
     }
-    for (const auto& [index, in_world] : lit_shapes_) {
-      if (in_world && scene_->plan.direct_light) add_emitters(index);
-    }
+    for (const LitShape& lit : lit_shapes_) add_emitters(lit);
   }
 
   void add_light(SceneLight entry) {
-    if (!entry.is_delta) {
+    if (!entry.light->is_delta()) {
       entry.dimension = scene_->light_dimensions;
       scene_->light_dimensions += 2;
     }
-    entry.reach = reach_of(*scene_, entry);
+    entry.reach = entry.light->reach();
     scene_->lights.push_back(entry);
   }
 
+  /// A shape that emits. What is in an object can be seen, but not sampled.
+  struct LitShape {
+    int index;
+    bool in_world;
+    Emission emission;
+  };
+
   /// As in pbrt, each triangle of an emitting mesh is a light of its own.
-  void add_emitters(int index) {
-    const SceneShape& shape = scene_->shapes[static_cast<size_t>(index)];
-    const Emission& emission = scene_->emissions[static_cast<size_t>(shape.emission)];
-    const size_t count = shape.mesh ? shape.mesh->triangle_count() : shape.analytic ? 1 : 0;
+  void add_emitters(const LitShape& lit) {
+    SceneShape& shape = scene_->shapes[static_cast<size_t>(lit.index)];
+    shape.emitter = static_cast<int>(scene_->emitters.size());
+    const bool sampled = lit.in_world && scene_->plan.direct_light && !shape.curves;
+    if (sampled) shape.first_light = static_cast<int>(scene_->lights.size());
+    const size_t count = sampled && shape.mesh ? shape.mesh->triangle_count() : 1;
     for (size_t t = 0; t < count; ++t) {
-      SceneLight entry;
-      entry.shape = index;
-      entry.prim = static_cast<uint32_t>(t);
-      entry.radiance = emission.radiance;
-      entry.two_sided = emission.two_sided;
-      add_light(entry);
+      const auto prim = static_cast<uint32_t>(t);
+      scene_->emitters.push_back(make_emitter(shape, prim, lit.emission));
+      if (sampled) add_light({.light = scene_->emitters.back().get(), .shape = lit.index, .prim = prim});
     }
   }
 
@@ -791,7 +791,7 @@ class Builder {
   std::map<int, std::vector<size_t>> moving_;  ///< Groups of moving shapes, by object (-1: the world).
   std::unordered_set<size_t> far_;             ///< Instances that are left out.
   std::map<std::pair<int, int>, int> keys_;
-  std::vector<std::pair<int, bool>> lit_shapes_;
+  std::vector<LitShape> lit_shapes_;
   DegenerateTriangles degenerate_;
   std::vector<const Shape*> plugins_;  ///< Of Scene::shapes.
   double scene_radius_ = 1;

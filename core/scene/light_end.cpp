@@ -16,8 +16,7 @@ RayEnd end_on_triangle(const Accel& accel, const Mesh& mesh, uint32_t prim) {
   end.n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   Box3d box;
   for (const Vec3d& corner : corners) box.extendBy(corner);
-  const auto farther = [&](int k) { return std::max(std::abs(box.min[k]), std::abs(box.max[k])); };
-  end.error = rounding_of({farther(0), farther(1), farther(2)});
+  end.error = rounding_of(farthest_of(box));
   end.touched = accel.is_touched(box, &corners);
   return end;
 }
@@ -27,7 +26,7 @@ RayEnd end_on_shape(const Accel& accel, const AnalyticShape& shape, const SceneL
   end.on = RayEnd::On::Shape;
   end.analytic = &shape;
   // The back of a two-sided light is seen past its front.
-  if (!light.two_sided) end.unshaded_by = light.shape;
+  if (!light.light->is_two_sided()) end.unshaded_by = light.shape;
   const Box3d box = transform_box(shape.object_to_scene(), shape.object_bounds());
   end.error = Vec3d(rounding_of_size(shape.object_bounds(), shape.object_to_scene()));
   end.touched = accel.is_touched(box, nullptr);
@@ -37,7 +36,7 @@ RayEnd end_on_shape(const Accel& accel, const AnalyticShape& shape, const SceneL
 }  // namespace
 
 RayEnd end_of(const Scene& scene, const SceneLight& light) {
-  if (!light.light) {
+  if (light.shape >= 0) {
     const SceneShape& shape = scene.shapes[static_cast<size_t>(light.shape)];
     return shape.mesh ? end_on_triangle(*scene.accel, *shape.mesh, light.prim)
                       : end_on_shape(*scene.accel, *shape.analytic, light);

@@ -58,16 +58,12 @@ struct SceneShape {
   const AnalyticShape* analytic = nullptr;
   int material = 0;             ///< Index into Scene::materials.
   int sort_key = 0;             ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
-  int emission = -1;            ///< Index into Scene::emissions.
+  int emitter = -1;             ///< Index into Scene::emitters: of the only one, or of the first of a mesh.
+  int first_light = -1;         ///< Index into Scene::lights of the same; -1 where it is not sampled.
   float unit = 1;               ///< The length of a world unit in the shape's group.
   SourcePos where;              ///< Its statement.
   bool flips = false;           ///< ReverseOrientation XOR handedness (meshes with normals: alone): normals flip.
   bool passes_through = false;  ///< Its material is an interface: rays go on.
-};
-
-struct Emission {
-  RGB radiance{0.0f};
-  bool two_sided = false;
 };
 
 /// A placed object: which of Scene::instance_keys take its group's space to render space, at evenly spaced times.
@@ -76,17 +72,14 @@ struct SceneInstance {
   uint32_t first_key = 0, key_count = 0;
 };
 
-/// A light that is sampled once per shaded point: a Light plugin, or one emitting primitive of a shape.
+/// A light that can be sampled: a Light plugin, or one emitting primitive of a shape.
 struct SceneLight {
   const Light* light = nullptr;
-  int shape = -1;
+  int shape = -1;  ///< Of an emitting primitive.
   uint32_t prim = 0;
-  RGB radiance{0.0f};  ///< Of an emitting primitive.
-  bool two_sided = false;
-  bool is_delta = false;
   int dimension = -1;  ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
-  LightReach reach;
-  RayEnd end;  ///< Of its shadow rays.
+  LightReach reach{};
+  RayEnd end{};  ///< Of its shadow rays.
 };
 
 /// The numbers of the render that the command line may override.
@@ -116,7 +109,7 @@ struct Scene {
   std::vector<std::unique_ptr<AlphaTest>> alpha_tests;
   std::vector<const Material*> materials;
   std::vector<SceneShape> shapes;
-  std::vector<Emission> emissions;
+  std::vector<std::unique_ptr<const Light>> emitters;  ///< Emitting primitives of shapes.
   std::vector<SceneInstance> instances;
   std::vector<Mat4d> instance_keys;
   std::vector<SceneLight> lights;

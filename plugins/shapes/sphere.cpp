@@ -71,6 +71,12 @@ struct Sphere final : AnalyticShape {
     return cone.stretch < kRound ? cone.sample_sphere(flips_, u0, u1) : sample_nearly_round(cone, ref, u0, u1);
   }
 
+  double density_from(const Vec3d& ref, const Vec3d& p) const override {
+    const Cone cone(*this, ref);
+    if (!whole_ || cone.stretch > kNearlyRound) return AnalyticShape::density_from(ref, p);
+    return cone.is_outside() ? cone.pdf() : 1 / (4 * kPiD);
+  }
+
   void sample_lanes(const ShapeSampleLanes& s) const override {
     // Of the placement only, not of the reference point: any point does.
     const Cone placed(*this,

@@ -302,29 +302,15 @@ class Drawn {
 
   /// Whether one sample of the light has radiance at p, and its direction.
   bool sample(const SceneLight& light, Vec3f p, Vec3f& wi) {
-    float u = uniform(0, 0.9999f), v = uniform(0, 0.9999f), distance = 0, cosine = 0, pdf = 0;
+    float u = uniform(0, 0.9999f), v = uniform(0, 0.9999f), distance = 0;
     const Vec3Lanes at{&p.x, &p.y, &p.z}, direction{&wi.x, &wi.y, &wi.z};
-    if (light.light) {
-      RGB radiance(0.0f);
-      light.light->sample({1, at, &u, &v, direction, &distance, {&radiance.x, &radiance.y, &radiance.z}, {}});
-      return !is_black(radiance);
-    }
-    const SceneShape& shape = built_.scene->shapes[static_cast<size_t>(light.shape)];
-    if (shape.mesh) return sample_triangle(shape, light, p, wi, {u, v});
-    shape.analytic->sample_lanes({1, at, &u, &v, direction, &distance, &cosine, &pdf});
-    return pdf > 0 && (cosine > 0 || (light.two_sided && cosine < 0));
-  }
-
-  /// A mesh without normals: its front is that of its corners' order unless it flips.
-  static bool sample_triangle(const SceneShape& shape, const SceneLight& light, const Vec3f& p, Vec3f& wi, Vec2f u) {
-    const uint32_t* index = &shape.mesh->indices[3 * static_cast<size_t>(light.prim)];
-    const Vec3f a = shape.mesh->position(index[0]), b = shape.mesh->position(index[1]),
-                c = shape.mesh->position(index[2]);
-    const float root = std::sqrt(u.x);
-    const Vec3f q = a * (1 - root) + b * (root * u.y) + c * (root * (1 - u.y));
-    wi = (q - p).normalized();
-    const Vec3f n = (b - a).cross(c - a).normalized() * (shape.flips ? -1.0f : 1.0f);
-    return light.two_sided ? n.dot(wi) != 0 : n.dot(wi) < 0;
+    RGB radiance(0.0f);
+    const ArenaScope scratch(arena_);
+    LightSamples s;
+    s.n = 1, s.arena = &arena_, s.p = at, s.u = &u, s.v = &v;
+    s.wi = direction, s.distance = &distance, s.radiance = {&radiance.x, &radiance.y, &radiance.z};
+    light.light->sample(s);
+    return !is_black(radiance);
   }
 
   test::BuiltScene built_;
