@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/base/effect.h"
 #include "core/batch/arena.h"
 #include "core/batch/lanes.h"
 #include "core/batch/shading.h"
-#include "core/plugin/effect.h"
 
 namespace whit {
 

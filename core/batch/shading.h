@@ -3,10 +3,10 @@
 
 #include <vector>
 
+#include "core/base/effect.h"
 #include "core/batch/arena.h"
 #include "core/batch/lanes.h"
 #include "core/batch/stage_clock.h"
-#include "core/plugin/effect.h"
 
 namespace whit {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/diagnostics.h"
+#include "core/base/effect.h"
 #include "core/base/render_space.h"
-#include "core/plugin/effect.h"
 
 namespace whit {
 

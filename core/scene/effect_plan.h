@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/plugin/effect.h"
+#include "core/base/effect.h"
 #include "core/scene/bound_scene.h"
 
 namespace whit {

@@ -1,4 +1,4 @@
-#include "core/plugin/effect.h"
+#include "core/base/effect.h"
 
 #include <algorithm>
 #include <string_view>
