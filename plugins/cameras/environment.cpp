@@ -3,7 +3,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/plugin/registry.h"
-#include "core/plugin/screen_camera.h"
+#include "plugins/shared/screen_camera.h"
 
 namespace whit {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/base/sampling.h"
 #include "core/plugin/registry.h"
-#include "core/plugin/screen_camera.h"
+#include "plugins/shared/screen_camera.h"
 
 namespace whit {
 namespace {

@@ -2,9 +2,9 @@
 // space is the picture's zenith. Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.3.
 
 #include "core/base/fastmath.h"
-#include "core/image/light_map.h"
-#include "core/plugin/point_source.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/light_map.h"
+#include "plugins/shared/point_source.h"
 
 namespace whit {
 namespace {

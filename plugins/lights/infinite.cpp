@@ -2,9 +2,9 @@
 // Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.6 and 14.2.4. The map is neither flipped nor
 // gamma decoded, and is read bilinearly.
 
-#include "core/image/latlong_map.h"
-#include "core/plugin/environment.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/environment.h"
+#include "plugins/shared/latlong_map.h"
 
 namespace whit {
 namespace {

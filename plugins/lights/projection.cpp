@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
-#include "core/image/light_map.h"
-#include "core/plugin/point_source.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/light_map.h"
+#include "plugins/shared/point_source.h"
 
 namespace whit {
 namespace {

@@ -3,9 +3,9 @@
 // inside, with parallax; points outside the sphere see its far side through it and black past it.
 
 #include "core/base/fastmath.h"
-#include "core/image/latlong_map.h"
-#include "core/plugin/environment.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/environment.h"
+#include "plugins/shared/latlong_map.h"
 
 namespace whit {
 namespace {

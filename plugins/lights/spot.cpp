@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
-#include "core/plugin/point_source.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/point_source.h"
 
 namespace whit {
 namespace {

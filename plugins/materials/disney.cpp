@@ -6,8 +6,8 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/lobe_formulas.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/batch/lobe_fourier.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

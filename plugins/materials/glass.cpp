@@ -1,9 +1,9 @@
 // A dielectric boundary, smooth or rough. Smooth: reflection and refraction by Fresnel's equations, as two
 // lobes. Rough: microfacets after Walter et al., Microfacet Models for Refraction through Rough Surfaces,
 // 2007. Where a texture makes both roughnesses 0 the surface is smooth.
-#include "core/plugin/dielectric_surface.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/dielectric_surface.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,9 +1,9 @@
 // A dielectric boundary over a medium given by its diffuse reflectance and mean free path instead of its scattering
 // coefficients (Jensen and Buhler, A Rapid Hierarchical Rendering Technique for Translucent Materials, 2002). Only the
 // boundary is simulated: the integrator follows no light inside, so the medium's parameters change nothing.
-#include "core/plugin/dielectric_surface.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/dielectric_surface.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,8 +1,8 @@
 // Diffuse reflection: Lambert's, or that of Oren and Nayar (Generalization of Lambert's Reflectance Model,
 // 1994) where sigma is not 0.
 #include "core/batch/lobe_formulas.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/base/spectrum.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,6 +1,6 @@
 // A perfect mirror: reflects the same share at every angle.
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -2,8 +2,8 @@
 // the index of refraction for ray differentials; mixes may be mixed.
 #include <memory>
 
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,7 +1,7 @@
 // A smooth dielectric: reflects and refracts by Fresnel's equations, and reflects totally beyond the critical
 // angle. A black Kr or Kt removes only its own lobe.
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

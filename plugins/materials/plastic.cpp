@@ -1,6 +1,6 @@
 // A diffuse base and a glossy Torrance-Sparrow coat with Trowbridge-Reitz facets.
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,7 +1,7 @@
 // A diffuse base under a glossy coat that hides it towards grazing angles. Ashikhmin and Shirley, An Anisotropic
 // Phong BRDF Model, Journal of Graphics Tools 5(2), 2000, with Trowbridge-Reitz facets, as in pbrt-v3.
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/plugin/dielectric_surface.h"
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/dielectric_surface.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -1,7 +1,7 @@
 // A thin sheet that reflects and transmits, both diffusely and through rough dielectric facets. The facets are those
 // of Walter et al., Microfacet Models for Refraction through Rough Surfaces, 2007, with an index of 1.5.
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

@@ -3,8 +3,8 @@
 // as in pbrt-v3.
 #include <optional>
 
-#include "core/plugin/material_inputs.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {

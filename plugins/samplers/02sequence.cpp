@@ -3,7 +3,7 @@
 // Kollig and Keller, Efficient Multidimensional Sampling, 2002; Burley, JCGT 9(4), 2020.
 
 #include "core/plugin/registry.h"
-#include "core/plugin/sobol_sampler.h"
+#include "plugins/shared/sobol_sampler.h"
 
 namespace whit {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/base/sobol.h"
 #include "core/plugin/registry.h"
-#include "core/plugin/sobol_sampler.h"
+#include "plugins/shared/sobol_sampler.h"
 
 namespace whit {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "core/plugin/registry.h"
-#include "core/plugin/sobol_sampler.h"
+#include "plugins/shared/sobol_sampler.h"
 
 namespace whit {
 namespace {

@@ -1,7 +1,7 @@
 // Four values at the corners of the unit square of texture coordinates, blended bilinearly, and extrapolated
 // beyond.
-#include "core/plugin/texture_channels.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_channels.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
-#include "core/plugin/texture_channels.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_channels.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 namespace {

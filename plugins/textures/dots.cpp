@@ -1,8 +1,8 @@
 // Round dots, in about half of the cells of a unit grid, each off its cell's centre by chance. Not antialiased. As in
 // pbrt-v3, "inside" is what lies between the dots. Source: PBR book, 3rd ed., 10.6.2.
 #include "core/base/noise.h"
-#include "core/plugin/texture_channels.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_channels.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 namespace {

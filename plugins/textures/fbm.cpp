@@ -1,6 +1,6 @@
 // Fractional Brownian motion: octaves of noise that grow weaker as they grow finer. It is not limited to [0, 1], and may
 // be negative. Source: PBR book, 3rd ed., 10.6.3.
-#include "core/plugin/texture_noise.h"
+#include "plugins/shared/texture_noise.h"
 
 namespace whit {
 namespace {

@@ -3,8 +3,8 @@
 #include "core/image/image.h"
 #include "core/image/signature.h"
 #include "core/image/texture_store.h"
-#include "core/plugin/texture_channels.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_channels.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 namespace {

@@ -1,6 +1,6 @@
 // Veins of marble: a spline of colours, run through by a sine of the height, which noise disturbs. As in pbrt-v3 the
 // spline extrapolates beyond its second segment, up to values of about 10. Source: PBR book, 3rd ed., 10.6.5.
-#include "core/plugin/texture_noise.h"
+#include "plugins/shared/texture_noise.h"
 
 namespace whit {
 namespace {

@@ -1,6 +1,6 @@
 // A linear blend of two textures.
 #include "core/plugin/registry.h"
-#include "core/plugin/texture_channels.h"
+#include "plugins/shared/texture_channels.h"
 
 namespace whit {
 namespace {

@@ -2,7 +2,7 @@
 // mapped.
 #include <cmath>
 
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 namespace {

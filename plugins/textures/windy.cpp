@@ -1,6 +1,6 @@
 // Waves on water in a wind that is not the same everywhere: fine octaves of noise times the absolute value of coarse
 // ones. Source: PBR book, 3rd ed., 10.6.4.
-#include "core/plugin/texture_noise.h"
+#include "plugins/shared/texture_noise.h"
 
 namespace whit {
 namespace {

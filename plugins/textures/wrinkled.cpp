@@ -1,6 +1,6 @@
 // Octaves of the absolute value of noise, whose creases look like wrinkles. Never negative. Source: PBR book, 3rd ed.,
 // 10.6.3, after Perlin 1985.
-#include "core/plugin/texture_noise.h"
+#include "plugins/shared/texture_noise.h"
 
 namespace whit {
 namespace {

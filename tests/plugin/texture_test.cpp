@@ -9,7 +9,7 @@
 #include "core/image/write.h"
 #include "core/plugin/bump.h"
 #include "core/plugin/registry.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_mapping.h"
 #include "tests/base/temp_folder.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/plugins/make_plugin.h"

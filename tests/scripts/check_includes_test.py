@@ -11,7 +11,7 @@ SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "t
 # The least tree in which every folder has a header to include.
 HEADERS = ["core/base/vec.h", "core/plugin/light.h", "core/batch/batch.h", "core/image/image.h", "core/color/color.h",
            "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h", "parser/scene_description.h",
-           "parser/tokens.h", "plugins/lights/shared.h", "tools/whit/main.h", "tests/base/helper.h"]
+           "parser/tokens.h", "plugins/shared/sky.h", "plugins/lights/lamp.h", "tools/whit/main.h", "tests/base/helper.h"]
 
 
 def run(files):
@@ -50,7 +50,8 @@ class CheckIncludes(unittest.TestCase):
         self.accepted("core/render/a.cpp", '"core/scene/scene.h"', '"core/accel/accel.h"', "<oneapi/tbb.h>")
         self.accepted("parser/a.cpp", '"parser/tokens.h"', '"core/base/vec.h"', "<Imath/half.h>", "<sys/mman.h>")
         self.accepted("plugins/lights/a.cpp", '"core/plugin/light.h"', '"core/batch/batch.h"', '"core/image/image.h"',
-                      '"core/color/color.h"', '"core/base/vec.h"')
+                      '"core/color/color.h"', '"core/base/vec.h"', '"plugins/shared/sky.h"')
+        self.accepted("plugins/shared/a.cpp", '"plugins/shared/sky.h"', '"core/plugin/light.h"', '"core/image/image.h"')
         self.accepted("tools/whit/a.cpp", '"core/render/render.h"', '"parser/tokens.h"', "<CLI/CLI.hpp>",
                       "<whatever.hpp>")
         self.accepted("tests/base/a.cpp", '"core/render/render.h"', "<gtest/gtest.h>", "<embree3/rtcore.h>")
@@ -95,15 +96,19 @@ class CheckIncludes(unittest.TestCase):
         self.rejected("core/render/a.cpp", "<boost/array.hpp>", "a new library needs a rule")
 
     def test_plugins(self):
-        self.rejected("plugins/lights/a.cpp", '"plugins/lights/shared.h"', "plugins do not know each other")
+        self.rejected("plugins/lights/a.cpp", '"plugins/lights/lamp.h"', "plugins do not know each other")
         self.rejected("plugins/lights/a.cpp", '"core/accel/accel.h"', "plugins may include")
         self.rejected("plugins/lights/a.cpp", '"core/scene/scene.h"', "plugins may include")
         self.rejected("plugins/lights/a.cpp", '"core/render/render.h"', "plugins may include")
-        self.rejected("plugins/lights/a.cpp", "<immintrin.h>", "no intrinsics")
+        for folder in ("plugins/lights", "plugins/shared"):
+            self.rejected(folder + "/a.cpp", "<immintrin.h>", "no intrinsics")
+        self.rejected("plugins/shared/a.cpp", '"plugins/lights/lamp.h"', "nothing includes a plugin")
+        self.rejected("plugins/shared/a.cpp", '"core/scene/scene.h"', "plugins/shared may include")
 
     def test_core_never_includes_a_plugin_a_tool_or_a_test(self):
         for folder in ["core/plugin", "core/scene", "core/render", "parser"]:
-            self.rejected(folder + "/a.cpp", '"plugins/lights/shared.h"', "nothing includes a plugin")
+            self.rejected(folder + "/a.cpp", '"plugins/lights/lamp.h"', "nothing includes a plugin")
+            self.rejected(folder + "/a.cpp", '"plugins/shared/sky.h"', "nothing includes a plugin")
             self.rejected(folder + "/a.cpp", '"tools/whit/main.h"', "may include")
             self.rejected(folder + "/a.cpp", '"tests/base/helper.h"', "may include")
 

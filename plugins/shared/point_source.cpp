@@ -1,4 +1,4 @@
-#include "core/plugin/point_source.h"
+#include "plugins/shared/point_source.h"
 
 #include <algorithm>
 #include <cmath>

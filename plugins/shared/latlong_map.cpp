@@ -1,4 +1,4 @@
-#include "core/image/latlong_map.h"
+#include "plugins/shared/latlong_map.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "core/image/light_map.h"
+#include "plugins/shared/light_map.h"
 
 #include <limits>
 

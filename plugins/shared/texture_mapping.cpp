@@ -1,4 +1,4 @@
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_mapping.h"
 
 #include "core/base/fastmath.h"
 

@@ -1,4 +1,4 @@
-#include "core/plugin/material_inputs.h"
+#include "plugins/shared/material_inputs.h"
 
 #include "core/batch/lobe_formulas.h"
 

@@ -8,7 +8,7 @@
 
 #include "core/base/distribution.h"
 #include "core/image/texels.h"
-#include "core/plugin/environment.h"
+#include "plugins/shared/environment.h"
 
 namespace whit {
 

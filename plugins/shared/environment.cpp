@@ -1,4 +1,4 @@
-#include "core/plugin/environment.h"
+#include "plugins/shared/environment.h"
 
 #include <algorithm>
 #include <cmath>

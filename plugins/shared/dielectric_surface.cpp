@@ -1,8 +1,8 @@
-#include "core/plugin/dielectric_surface.h"
+#include "plugins/shared/dielectric_surface.h"
 
 #include <cmath>
 
-#include "core/plugin/material_inputs.h"
+#include "plugins/shared/material_inputs.h"
 
 namespace whit {
 

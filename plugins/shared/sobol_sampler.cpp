@@ -1,4 +1,4 @@
-#include "core/plugin/sobol_sampler.h"
+#include "plugins/shared/sobol_sampler.h"
 
 #include <algorithm>
 #include <bit>

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/plugin/light.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 

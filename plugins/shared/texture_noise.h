@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/base/noise.h"
-#include "core/plugin/texture_channels.h"
-#include "core/plugin/texture_mapping.h"
+#include "plugins/shared/texture_channels.h"
+#include "plugins/shared/texture_mapping.h"
 
 namespace whit {
 
