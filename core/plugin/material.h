@@ -1,7 +1,7 @@
 // Materials: which lobes a surface has, and how strong, at the points of a batch.
 #pragma once
 
-#include "core/batch/lobe.h"
+#include "core/lobe/lobe.h"
 #include "core/plugin/param.h"
 #include "core/plugin/texture.h"
 

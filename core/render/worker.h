@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/batch/arena.h"
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 #include "core/render/ray_list.h"
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"

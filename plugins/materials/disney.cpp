@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
-#include "core/batch/lobe_formulas.h"
+#include "core/lobe/formulas.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 

@@ -1,11 +1,12 @@
 // A measured or simulated BSDF from a file: a cosine series in the azimuth for every pair of zenith angles. Jakob et
-// al., A Comprehensive Framework for Rendering Layered Materials, 2014; see core/batch/lobe_fourier.h. Isotropic, of
+// al., A Comprehensive Framework for Rendering Layered Materials, 2014; see core/lobe/fourier.h. Isotropic, of
 // one or three channels.
+#include "core/lobe/fourier.h"
+
 #include <fstream>
 #include <iterator>
 #include <string>
 
-#include "core/batch/lobe_fourier.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 

@@ -1,11 +1,12 @@
 // Hair and fur: a rough dielectric cylinder with an absorbing inside and tilted scales, made for curves. Chiang et
 // al., A Practical and Controllable Hair and Fur Model for Production Path Tracing, 2016, and Pharr, The
-// Implementation of a Hair Scattering Model, 2016; see core/batch/lobe_hair.h. Light between hairs is not simulated.
+// Implementation of a Hair Scattering Model, 2016; see core/lobe/hair.h. Light between hairs is not simulated.
+#include "core/lobe/hair.h"
+
 #include <optional>
 #include <string>
 
 #include "core/base/fastmath.h"
-#include "core/batch/lobe_hair.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 

@@ -1,6 +1,6 @@
 // Diffuse reflection: Lambert's, or that of Oren and Nayar (Generalization of Lambert's Reflectance Model,
 // 1994) where sigma is not 0.
-#include "core/batch/lobe_formulas.h"
+#include "core/lobe/formulas.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 

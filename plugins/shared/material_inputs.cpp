@@ -1,6 +1,6 @@
 #include "plugins/shared/material_inputs.h"
 
-#include "core/batch/lobe_formulas.h"
+#include "core/lobe/formulas.h"
 
 namespace whit {
 

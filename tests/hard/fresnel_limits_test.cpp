@@ -2,9 +2,9 @@
 #include <limits>
 #include <vector>
 
-#include "tests/batch/lobe_bench.h"
 #include "tests/hard/glass.h"
 #include "tests/hard/hard_case.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "core/batch/lobe_formulas.h"
-#include "tests/batch/lobe_bench.h"
+#include "core/lobe/formulas.h"
 #include "tests/hard/glass.h"
 #include "tests/hard/hard_case.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

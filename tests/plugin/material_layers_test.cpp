@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "core/batch/lobe_eval.h"
-#include "core/batch/lobe_hair.h"
+#include "core/lobe/eval.h"
+#include "core/lobe/hair.h"
 #include "core/plugin/material.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/plugins/make_plugin.h"

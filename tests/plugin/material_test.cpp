@@ -10,8 +10,8 @@
 #include <random>
 #include <set>
 
-#include "core/batch/lobe_eval.h"
-#include "core/batch/lobe_formulas.h"
+#include "core/lobe/eval.h"
+#include "core/lobe/formulas.h"
 #include "core/plugin/registry.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/plugins/make_plugin.h"

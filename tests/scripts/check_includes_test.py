@@ -9,7 +9,7 @@ import unittest
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "check-includes")
 
 # The least tree in which every folder has a header to include.
-HEADERS = ["core/base/vec.h", "core/plugin/light.h", "core/batch/batch.h", "core/image/image.h", "core/color/color.h",
+HEADERS = ["core/base/vec.h", "core/plugin/light.h", "core/batch/batch.h", "core/lobe/lobe.h", "core/image/image.h", "core/color/color.h",
            "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h", "parser/scene_description.h",
            "parser/tokens.h", "plugins/shared/sky.h", "plugins/lights/lamp.h", "tools/whit/main.h", "tests/base/helper.h"]
 
@@ -41,6 +41,8 @@ class CheckIncludes(unittest.TestCase):
         self.accepted("core/base/a.cpp", '"core/base/vec.h"', "<cmath>", "<stdint.h>", "<Imath/ImathVec.h>")
         self.accepted("core/plugin/a.h", '"core/base/vec.h"', '"core/batch/batch.h"', "<fmt/format.h>")
         self.accepted("core/batch/a.h", '"core/base/vec.h"', "<tbb/parallel_for.h>")
+        self.accepted("core/lobe/a.h", '"core/base/vec.h"', '"core/batch/batch.h"', "<fmt/format.h>")
+        self.accepted("core/plugin/b.h", '"core/lobe/lobe.h"')
         self.accepted("core/image/a.cpp", '"core/image/image.h"', '"core/plugin/light.h"', "<OpenImageIO/imageio.h>")
         self.accepted("core/color/a.cpp", '"core/image/image.h"', "<OpenColorIO/OpenColorIO.h>")
         self.accepted("core/accel/a.cpp", '"core/image/image.h"', '"core/color/color.h"', "<embree3/rtcore.h>",
@@ -69,6 +71,7 @@ class CheckIncludes(unittest.TestCase):
             for high in order[below + 1:]:
                 self.rejected(os.path.dirname(low) + "/a.cpp", '"%s"' % high, "may include")
         self.rejected("core/batch/a.cpp", '"core/plugin/light.h"', "core/batch may include core/base")
+        self.rejected("core/batch/a.cpp", '"core/lobe/lobe.h"', "core/batch may include core/base")
 
     def test_parser(self):
         for header in HEADERS:
@@ -79,7 +82,7 @@ class CheckIncludes(unittest.TestCase):
 
     def test_only_scene_sees_the_parser(self):
         self.rejected("core/scene/a.cpp", '"parser/tokens.h"', "only parser/scene_description.h")
-        for folder in ["base", "plugin", "batch", "image", "color", "accel", "render"]:
+        for folder in ["base", "plugin", "batch", "lobe", "image", "color", "accel", "render"]:
             self.rejected("core/%s/a.cpp" % folder, '"parser/scene_description.h"', "core/%s may include" % folder)
         self.rejected("plugins/lights/a.cpp", '"parser/scene_description.h"', "plugins may include")
 

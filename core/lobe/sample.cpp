@@ -1,10 +1,10 @@
 // Importance sampling of the non-specular lobes. Plain scalar code, lane by lane: the Whitted integrator
 // samples lights and delta lobes only.
-#include "core/batch/lobe_disney.h"
-#include "core/batch/lobe_eval.h"
-#include "core/batch/lobe_formulas.h"
-#include "core/batch/lobe_fourier.h"
-#include "core/batch/lobe_hair.h"
+#include "core/lobe/disney.h"
+#include "core/lobe/eval.h"
+#include "core/lobe/formulas.h"
+#include "core/lobe/fourier.h"
+#include "core/lobe/hair.h"
 
 namespace whit {
 

@@ -1,10 +1,10 @@
 // Tabulated BSDFs: the file reader and its errors, interpolation, colour, scaling of radiance, densities.
-#include "core/batch/lobe_fourier.h"
+#include "core/lobe/fourier.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "tests/batch/lobe_bench.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

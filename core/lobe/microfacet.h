@@ -2,9 +2,9 @@
 // or one with another masking term and so a smith_sum() of its own.
 #pragma once
 
-#include "core/batch/lobe.h"
-#include "core/batch/lobe_formulas.h"
-#include "core/batch/lobe_pair.h"
+#include "core/lobe/formulas.h"
+#include "core/lobe/lobe.h"
+#include "core/lobe/pair.h"
 
 namespace whit {
 

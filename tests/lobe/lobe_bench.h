@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/base/fastmath.h"
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 
 namespace whit::test {
 

@@ -1,10 +1,10 @@
-#include "core/batch/lobe_fourier.h"
+#include "core/lobe/fourier.h"
 
 #include <algorithm>
 #include <cstring>
 #include <limits>
 
-#include "core/batch/lobe_pair.h"
+#include "core/lobe/pair.h"
 
 namespace whit {
 

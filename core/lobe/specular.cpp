@@ -1,6 +1,6 @@
 // Mirror and refraction: the delta lobes.
-#include "core/batch/lobe_eval.h"
-#include "core/batch/lobe_formulas.h"
+#include "core/lobe/eval.h"
+#include "core/lobe/formulas.h"
 
 namespace whit {
 

@@ -1,11 +1,11 @@
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 
-#include "core/batch/lobe_disney.h"
-#include "core/batch/lobe_formulas.h"
-#include "core/batch/lobe_fourier.h"
-#include "core/batch/lobe_hair.h"
-#include "core/batch/lobe_microfacet.h"
-#include "core/batch/lobe_pair.h"
+#include "core/lobe/disney.h"
+#include "core/lobe/formulas.h"
+#include "core/lobe/fourier.h"
+#include "core/lobe/hair.h"
+#include "core/lobe/microfacet.h"
+#include "core/lobe/pair.h"
 
 namespace whit {
 

@@ -1,7 +1,7 @@
-#include "core/batch/lobe_hair.h"
+#include "core/lobe/hair.h"
 
-#include "core/batch/lobe_formulas.h"
-#include "core/batch/lobe_pair.h"
+#include "core/lobe/formulas.h"
+#include "core/lobe/pair.h"
 
 namespace whit {
 

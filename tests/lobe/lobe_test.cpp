@@ -6,9 +6,9 @@
 #include <functional>
 #include <random>
 
-#include "core/batch/lobe_eval.h"
-#include "core/batch/lobe_formulas.h"
-#include "tests/batch/lobe_bench.h"
+#include "core/lobe/eval.h"
+#include "core/lobe/formulas.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

@@ -1,7 +1,7 @@
-#include "core/batch/lobe_disney.h"
+#include "core/lobe/disney.h"
 
-#include "core/batch/lobe_microfacet.h"
-#include "core/batch/lobe_pair.h"
+#include "core/lobe/microfacet.h"
+#include "core/lobe/pair.h"
 
 namespace whit {
 

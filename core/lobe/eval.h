@@ -5,8 +5,8 @@
 // shading normal, and radiance (not importance) is transported. A lane with ns . wo == 0 scatters nothing.
 #pragma once
 
-#include "core/batch/lobe.h"
 #include "core/batch/shading.h"
+#include "core/lobe/lobe.h"
 
 namespace whit {
 

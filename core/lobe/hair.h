@@ -12,7 +12,7 @@
 //   colour1  the absorption of the inside per radius;  eta  the relative index of refraction.
 #pragma once
 
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 
 namespace whit {
 

@@ -1,7 +1,7 @@
 // The hair lobe: energy, densities, symmetry and degenerate directions.
-#include "core/batch/lobe_hair.h"
+#include "core/lobe/hair.h"
 
-#include "tests/batch/lobe_bench.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

@@ -1,5 +1,5 @@
 // The closed set of scattering lobes. A material says which lobes its surface has and with which parameters;
-// the renderer evaluates lobe by lobe over the batch (core/batch/lobe_eval.h).
+// the renderer evaluates lobe by lobe over the batch (core/lobe/eval.h).
 #pragma once
 
 #include <cstdint>
@@ -21,14 +21,14 @@ enum class LobeType : uint8_t {
   MicrofacetReflection,    ///< Torrance-Sparrow, Trowbridge-Reitz; a, b: alpha along dpdu, dpdv
   MicrofacetTransmission,  ///< Walter et al. 2007; a, b: alpha; eta
   FresnelBlend,            ///< Diffuse under a glossy coat, Ashikhmin-Shirley; colour1, colour2: Rd, Rs; a, b: alpha
-  DisneyDiffuse,           ///< Burley 2015, see lobe_disney.h
+  DisneyDiffuse,           ///< Burley 2015, see disney.cpp
   DisneyFakeSubsurface,    ///< a: roughness
   DisneyRetro,             ///< a: roughness
   DisneySheen,
   DisneyClearcoat,     ///< a: alpha of the coat
   DisneyReflection,    ///< As MicrofacetReflection; colour1: Schlick's R0, c: metallic, eta: of the dielectric part
   DisneyTransmission,  ///< As MicrofacetTransmission
-  Hair,     ///< A fibre along dpdu, both sides; colour1: absorption; a: offset, b, c: widths, d: tilt, see lobe_hair.h
+  Hair,     ///< A fibre along dpdu, both sides; colour1: absorption; a: offset, b, c: widths, d: tilt, see hair.h
   Fourier,  ///< A tabulated BSDF, both sides
   SpecularReflection,    ///< Delta, mirror direction
   SpecularTransmission,  ///< Delta, refracted direction; radiance scaled by (eta_i/eta_t)^2

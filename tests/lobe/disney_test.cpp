@@ -1,10 +1,10 @@
 // Disney's lobes against their formulas' limits, energy, reciprocity and densities.
-#include "core/batch/lobe_disney.h"
+#include "core/lobe/disney.h"
 
 #include <functional>
 
-#include "core/batch/lobe_formulas.h"
-#include "tests/batch/lobe_bench.h"
+#include "core/lobe/formulas.h"
+#include "tests/lobe/lobe_bench.h"
 
 namespace whit {
 namespace {

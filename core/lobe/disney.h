@@ -3,7 +3,7 @@
 // Subsurface Scattering, 2015, as pbrt-v3 has them.
 #pragma once
 
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 
 namespace whit {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/batch/lobe_eval.h"
+#include "core/lobe/eval.h"
 
 namespace whit {
 
