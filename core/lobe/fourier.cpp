@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "core/lobe/draw.h"
 #include "core/lobe/pair.h"
 
 namespace whit {
@@ -220,6 +221,56 @@ float sample_azimuth(const float* a, int n, float u) {
   return mirrored ? -phi : phi;
 }
 
+/// The density with which sample() finds a direction, from what look_up() takes.
+float density(const FourierTable& t, float mu_o, float mu_i, float cos_phi, float* scratch) {
+  const Spline o = spline_at(t.mu, mu_o), i = spline_at(t.mu, mu_i);
+  if (!o.inside || !i.inside) return 0;
+  const int n = coefficients(t, o, i, scratch);
+  const float y = series(scratch, n, cos_phi);
+  float all = 0;
+  for (int b = 0; b < 4; ++b) {
+    if (o.w[b] != 0) all += o.w[b] * t.integrals[t.at(o.first + b, t.size() - 1)];
+  }
+  return y > 0 && all > 0 ? y / (kTwoPi * all) : 0.0f;
+}
+
+/// The zero vector when no direction comes out; both in the local frame.
+Vec3f sample(const FourierTable& t, const Vec3f& wo, float u, float v) {
+  const Spline o = spline_at(t.mu, wo.z);
+  if (!o.inside) return {0, 0, 0};
+  const float mu = sample_cosine(t, o, u);
+  const Spline i = spline_at(t.mu, mu);
+  if (!i.inside) return {0, 0, 0};
+  std::vector<float> a(static_cast<size_t>(t.max_order) * static_cast<size_t>(t.channels));
+  const int n = coefficients(t, o, i, a.data());
+  if (n == 0 || a[0] <= 0) return {0, 0, 0};
+  const float phi = sample_azimuth(a.data(), n, v) + (wo.x != 0 || wo.y != 0 ? atan2_of(wo.y, wo.x) : 0.0f);
+  const float r = safe_sqrt((1 - mu) * (1 + mu));
+  const SinCos at = sin_cos(phi);
+  return {-r * at.cos, -r * at.sin, -mu};
+}
+
+void eval(const LobeQuery& q, const LobeValues& out) {
+  const FourierTable& t = *q.lobe.table;
+  const RGBLanes weight = q.lobe.weight;
+  const ArenaScope scope(*q.s.arena);
+  float* const scratch = q.s.arena->floats(t.max_order * t.channels);
+  // Not lanes side by side: each reads series of its own length, and adding them up is what vectorises.
+  for (int i = 0; i < q.s.n; ++i) {
+    const Pair p = make_pair(q.s, q.wi, i);
+    if (p.zo == 0) continue;
+    const Vec3f o = p.wo - p.n * p.zo, w = p.wi - p.n * p.zi;
+    const float cos_phi = cos_azimuth(dot(w, w), dot(o, o), dot(w, o));
+    const RGB f = look_up(t, p.zo, -p.zi, cos_phi, scratch);
+    out.f.r[i] += weight.r[i] * f.x, out.f.g[i] += weight.g[i] * f.y, out.f.b[i] += weight.b[i] * f.z;
+    if (out.pdf) out.pdf[i] += out.share[i] * density(t, p.zo, -p.zi, cos_phi, scratch);
+  }
+}
+
+void draw(const LobeDraw& d) {
+  draw_one_by_one(d, [&](int, const Vec3f& wo, float u, float v) { return sample(*d.lobe.table, wo, u, v); });
+}
+
 }  // namespace
 
 std::string parse_fourier_table(std::string_view bytes, FourierTable& table) {
@@ -252,47 +303,13 @@ std::string parse_fourier_table(std::string_view bytes, FourierTable& table) {
   return problem;
 }
 
-void add_fourier(const Lobe& lobe, const ShadingBatch& s, const Vec3Lanes& wi, const RGBLanes& out) {
-  const FourierTable& t = *lobe.table;
-  const ArenaScope scope(*s.arena);
-  float* const scratch = s.arena->floats(t.max_order * t.channels);
-  // Not lanes side by side: each reads series of its own length, and adding them up is what vectorises.
-  for (int i = 0; i < s.n; ++i) {
-    const Pair p = make_pair(s, wi, i);
-    if (p.zo == 0) continue;
-    const Vec3f o = p.wo - p.n * p.zo, w = p.wi - p.n * p.zi;
-    const RGB f = look_up(t, p.zo, -p.zi, cos_azimuth(dot(w, w), dot(o, o), dot(w, o)), scratch);
-    out.r[i] += lobe.weight.r[i] * f.x, out.g[i] += lobe.weight.g[i] * f.y, out.b[i] += lobe.weight.b[i] * f.z;
-  }
-}
-
-float fourier_pdf(const FourierTable& t, const Vec3f& wo, const Vec3f& wi) {
-  const Spline o = spline_at(t.mu, wo.z), i = spline_at(t.mu, -wi.z);
-  if (!o.inside || !i.inside) return 0;
-  std::vector<float> a(static_cast<size_t>(t.max_order) * static_cast<size_t>(t.channels));
-  const int n = coefficients(t, o, i, a.data());
-  const float product = wo.x * wi.x + wo.y * wi.y;
-  const float y = series(a.data(), n, cos_azimuth(wi.x * wi.x + wi.y * wi.y, wo.x * wo.x + wo.y * wo.y, product));
-  float all = 0;
-  for (int b = 0; b < 4; ++b) {
-    if (o.w[b] != 0) all += o.w[b] * t.integrals[t.at(o.first + b, t.size() - 1)];
-  }
-  return y > 0 && all > 0 ? y / (kTwoPi * all) : 0.0f;
-}
-
-Vec3f sample_fourier(const FourierTable& t, const Vec3f& wo, float u, float v) {
-  const Spline o = spline_at(t.mu, wo.z);
-  if (!o.inside) return {0, 0, 0};
-  const float mu = sample_cosine(t, o, u);
-  const Spline i = spline_at(t.mu, mu);
-  if (!i.inside) return {0, 0, 0};
-  std::vector<float> a(static_cast<size_t>(t.max_order) * static_cast<size_t>(t.channels));
-  const int n = coefficients(t, o, i, a.data());
-  if (n == 0 || a[0] <= 0) return {0, 0, 0};
-  const float phi = sample_azimuth(a.data(), n, v) + (wo.x != 0 || wo.y != 0 ? atan2_of(wo.y, wo.x) : 0.0f);
-  const float r = safe_sqrt((1 - mu) * (1 + mu));
-  const SinCos at = sin_cos(phi);
-  return {-r * at.cos, -r * at.sin, -mu};
-}
+const LobeRow lobe_rows::Fourier = {
+    .name = "Fourier",
+    .effect = Effect::Glossy,
+    .reflects = true,
+    .transmits = true,
+    .eval = eval,
+    .sample = draw,
+};
 
 }  // namespace whit

@@ -3,11 +3,11 @@
 // and 14.1.4. The tables come from Jakob's layerlab.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
-
-#include "core/lobe/eval.h"
 
 namespace whit {
 
@@ -31,13 +31,5 @@ struct FourierTable {
 
 /// Reads the content of a bsdf file ("SCATFUN", version 1). Returns what is wrong with it, "" when nothing is.
 std::string parse_fourier_table(std::string_view bytes, FourierTable& table);
-
-/// Adds the lobe to `out`, times |wi . ns|, as eval_lobes() does. Both sides of the surface scatter.
-void add_fourier(const Lobe& lobe, const ShadingBatch& s, const Vec3Lanes& wi, const RGBLanes& out);
-
-/// The density with which sample_fourier() finds wi; both in the local frame.
-float fourier_pdf(const FourierTable& table, const Vec3f& wo, const Vec3f& wi);
-/// The zero vector when no direction comes out.
-Vec3f sample_fourier(const FourierTable& table, const Vec3f& wo, float u, float v);
 
 }  // namespace whit

@@ -1,5 +1,6 @@
 #include "core/lobe/hair.h"
 
+#include "core/lobe/draw.h"
 #include "core/lobe/formulas.h"
 #include "core/lobe/pair.h"
 
@@ -156,32 +157,14 @@ float sample_logistic(float scale, float u) {
   return clamp_to(scale * (log_of(cdf) - log_of(1 - cdf)), -kPi, kPi);
 }
 
-}  // namespace
-
-void add_hair(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
-              const RGBLanes& out) {
-  const RGBLanes absorption = lobe.colour1;
-  for_lanes(s.n, [&](int i) {
-    const Vec3f o = s.wo[i], w = wi[i], x = frame.ss[i], y = frame.ts[i], z = s.ns[i];
-    const float yo = dot(o, y), zo = dot(o, z), yi = dot(w, y), zi = dot(w, z);
-    const float phi = atan2_of(yo * zi - zo * yi, yo * yi + zo * zi);
-    const Fibre f = fibre(lobe, i, clamp_to(dot(o, x), -1.0f, 1.0f));
-    const Shape m = shape(f, lobe.b[i], inclination(clamp_to(dot(w, x), -1.0f, 1.0f)), phi);
-    // The model's own 1 / |cos| makes up for the surface's cosine: there is none.
-    const float on = zo != 0 ? 1.0f : 0.0f;
-    out.r[i] += on * lobe.weight.r[i] * sum_of(attenuation(f, absorption.r[i]), m);
-    out.g[i] += on * lobe.weight.g[i] * sum_of(attenuation(f, absorption.g[i]), m);
-    out.b[i] += on * lobe.weight.b[i] * sum_of(attenuation(f, absorption.b[i]), m);
-  });
-}
-
-float hair_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
+/// The density with which sample() finds wi, at point i; both in the local frame.
+float density(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi) {
   const Fibre f = fibre(lobe, i, clamp_to(wo.x, -1.0f, 1.0f));
   const float phi = atan2_of(wo.y * wi.z - wo.z * wi.y, wo.y * wi.y + wo.z * wi.z);
   return sum_of(path_shares(lobe, i, f), shape(f, lobe.b[i], inclination(clamp_to(wi.x, -1.0f, 1.0f)), phi));
 }
 
-Vec3f sample_hair(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
+Vec3f sample(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
   const Fibre f = fibre(lobe, i, clamp_to(wo.x, -1.0f, 1.0f));
   const Shape share = path_shares(lobe, i, f);
   int p = 0;
@@ -194,6 +177,36 @@ Vec3f sample_hair(const Lobe& lobe, int i, const Vec3f& wo, float u, float v) {
   return {w.sin, w.cos * phi.cos, w.cos * phi.sin};
 }
 
+void eval(const LobeQuery& q, const LobeValues& out) {
+  const Lobe& lobe = q.lobe;
+  const ShadingBatch& s = q.s;
+  const RGBLanes absorption = lobe.colour1;
+  for_lanes(s.n, [&](int i) {
+    const Vec3f o = s.wo[i], w = q.wi[i], x = q.frame.ss[i], y = q.frame.ts[i], z = s.ns[i];
+    const float yo = dot(o, y), zo = dot(o, z), yi = dot(w, y), zi = dot(w, z);
+    const float phi = atan2_of(yo * zi - zo * yi, yo * yi + zo * zi);
+    const Fibre f = fibre(lobe, i, clamp_to(dot(o, x), -1.0f, 1.0f));
+    const Shape m = shape(f, lobe.b[i], inclination(clamp_to(dot(w, x), -1.0f, 1.0f)), phi);
+    // The model's own 1 / |cos| makes up for the surface's cosine: there is none.
+    const float on = zo != 0 ? 1.0f : 0.0f;
+    out.f.r[i] += on * lobe.weight.r[i] * sum_of(attenuation(f, absorption.r[i]), m);
+    out.f.g[i] += on * lobe.weight.g[i] * sum_of(attenuation(f, absorption.g[i]), m);
+    out.f.b[i] += on * lobe.weight.b[i] * sum_of(attenuation(f, absorption.b[i]), m);
+  });
+  if (!out.pdf) return;
+  for (int i = 0; i < s.n; ++i) {
+    const Frame t{q.frame.ss[i], q.frame.ts[i]};
+    const Vec3f n = s.ns[i], wo = to_local(t, n, s.wo[i]);
+    if (wo.z != 0) out.pdf[i] += out.share[i] * density(lobe, i, wo, to_local(t, n, q.wi[i]));
+  }
+}
+
+void draw(const LobeDraw& d) {
+  draw_one_by_one(d, [&](int i, const Vec3f& wo, float u, float v) { return sample(d.lobe, i, wo, u, v); });
+}
+
+}  // namespace
+
 float hair_variance(float beta_m) {
   const float b2 = beta_m * beta_m, b4 = b2 * b2, b16 = b4 * b4 * b4 * b4;
   const float width = 0.726f * beta_m + 0.812f * b2 + 3.7f * (b16 * b4);
@@ -205,5 +218,15 @@ float hair_azimuthal_scale(float beta_n) {
   const float b2 = beta_n * beta_n, b4 = b2 * b2, b16 = b4 * b4 * b4 * b4;
   return kRootPiOver8 * (0.265f * beta_n + 1.194f * b2 + 5.372f * (b16 * b4 * b2));
 }
+
+const LobeRow lobe_rows::Hair = {
+    .name = "hair",
+    .effect = Effect::Glossy,
+    .reflects = true,
+    .transmits = true,
+    .needs_frame = [](const Lobe&) { return true; },
+    .eval = eval,
+    .sample = draw,
+};
 
 }  // namespace whit

@@ -12,17 +12,7 @@
 //   colour1  the absorption of the inside per radius;  eta  the relative index of refraction.
 #pragma once
 
-#include "core/lobe/eval.h"
-
 namespace whit {
-
-/// Adds the lobe to `out`, times |wi . ns|, as eval_lobes() does. Both sides of the surface scatter.
-void add_hair(const Lobe& lobe, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
-              const RGBLanes& out);
-
-/// The density with which sample_hair() finds wi, at point i; both in the local frame.
-float hair_pdf(const Lobe& lobe, int i, const Vec3f& wo, const Vec3f& wi);
-Vec3f sample_hair(const Lobe& lobe, int i, const Vec3f& wo, float u, float v);
 
 /// The longitudinal variance of R of a user's roughness in [0, 1]. Chiang et al. 2016.
 float hair_variance(float beta_m);

@@ -14,24 +14,11 @@ namespace whit {
 
 struct FourierTable;
 
+/// What a lobe is: lobe_types.inc says what the parameters of each type are, row_of() in core/lobe/table.h all else.
 enum class LobeType : uint8_t {
-  LambertReflection,       ///< weight / pi
-  LambertTransmission,     ///< weight / pi, other side
-  OrenNayar,               ///< param a, b: the A and B of Oren and Nayar 1994
-  MicrofacetReflection,    ///< Torrance-Sparrow, Trowbridge-Reitz; a, b: alpha along dpdu, dpdv
-  MicrofacetTransmission,  ///< Walter et al. 2007; a, b: alpha; eta
-  FresnelBlend,            ///< Diffuse under a glossy coat, Ashikhmin-Shirley; colour1, colour2: Rd, Rs; a, b: alpha
-  DisneyDiffuse,           ///< Burley 2015, see disney.cpp
-  DisneyFakeSubsurface,    ///< a: roughness
-  DisneyRetro,             ///< a: roughness
-  DisneySheen,
-  DisneyClearcoat,     ///< a: alpha of the coat
-  DisneyReflection,    ///< As MicrofacetReflection; colour1: Schlick's R0, c: metallic, eta: of the dielectric part
-  DisneyTransmission,  ///< As MicrofacetTransmission
-  Hair,     ///< A fibre along dpdu, both sides; colour1: absorption; a: offset, b, c: widths, d: tilt, see hair.h
-  Fourier,  ///< A tabulated BSDF, both sides
-  SpecularReflection,    ///< Delta, mirror direction
-  SpecularTransmission,  ///< Delta, refracted direction; radiance scaled by (eta_i/eta_t)^2
+#define LOBE(name) name,
+#include "core/lobe/lobe_types.inc"
+#undef LOBE
 };
 
 /// How a lobe's reflectance depends on the angle.
@@ -41,29 +28,10 @@ enum class FresnelType : uint8_t {
   Conductor,   ///< Exact unpolarised Fresnel of a metal; colour1 + i colour2 is the relative index. Microfacets only.
 };
 
-constexpr bool is_specular(LobeType t) {
-  return t == LobeType::SpecularReflection || t == LobeType::SpecularTransmission;
-}
-constexpr bool is_transmission(LobeType t) {
-  return t == LobeType::LambertTransmission || t == LobeType::MicrofacetTransmission ||
-         t == LobeType::DisneyTransmission || t == LobeType::SpecularTransmission;
-}
-
+/// Whether the lobe scatters to a single direction, which no given pair of directions meets.
+bool is_specular(LobeType type);
 /// The effect that a lobe is part of; sheens are diffuse and coats glossy, as in pbrt-v3.
-constexpr Effect effect_of(LobeType t) {
-  switch (t) {
-    case LobeType::SpecularReflection: return Effect::Reflection;
-    case LobeType::SpecularTransmission: return Effect::Refraction;
-    case LobeType::LambertReflection:
-    case LobeType::LambertTransmission:
-    case LobeType::OrenNayar:
-    case LobeType::DisneyDiffuse:
-    case LobeType::DisneyFakeSubsurface:
-    case LobeType::DisneyRetro:
-    case LobeType::DisneySheen: return Effect::Diffuse;
-    default: return Effect::Glossy;
-  }
-}
+Effect effect_of(LobeType type);
 
 /// One lobe over n points. A lane with a black weight does not have the lobe.
 struct Lobe {
@@ -114,6 +82,11 @@ class LobeSet {
 
   Arena* arena_;
   int capacity_ = 0;
+};
+
+/// The tangents of a run's points: with ns, an orthonormal basis. Null when no lobe needs them.
+struct LobeFrame {
+  Vec3Lanes ss, ts;  ///< Along dpdu (any direction when dpdu is 0), and cross(ns, ss).
 };
 
 }  // namespace whit

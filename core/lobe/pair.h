@@ -4,6 +4,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/shading.h"
+#include "core/lobe/table.h"
 
 namespace whit {
 
@@ -22,10 +23,27 @@ inline Pair make_pair(const ShadingBatch& s, const Vec3Lanes& wi_lanes, int i) {
   return {wo, wi, n, zo, zi, same_side ? on : 0.0f, same_side ? 0.0f : on};
 }
 
+/// The density of draw_diffuse(), and that of the other side.
+inline float diffuse_density(const Pair& p) { return p.zo * p.zi > 0 ? std::abs(p.zi) * kInvPi : 0.0f; }
+inline float diffuse_density_behind(const Pair& p) { return p.zo * p.zi < 0 ? std::abs(p.zi) * kInvPi : 0.0f; }
+
 inline void accumulate(const RGBLanes& out, int i, const RGBLanes& weight, float f) {
   out.r[i] += weight.r[i] * f;
   out.g[i] += weight.g[i] * f;
   out.b[i] += weight.b[i] * f;
+}
+
+/// Calls add(i, pair, add_density) for every lane; add_density(x) adds the lobe's share of a density x. Where densities
+/// are not asked for it does nothing, and what is computed for it costs nothing.
+template <class Add>
+void for_pairs(const LobeQuery& q, const LobeValues& out, const Add& add) {
+  if (out.pdf) {
+    for_lanes(q.s.n, [&](int i) {
+      add(i, make_pair(q.s, q.wi, i), [&](float density) { out.pdf[i] += out.share[i] * density; });
+    });
+  } else {
+    for_lanes(q.s.n, [&](int i) { add(i, make_pair(q.s, q.wi, i), [](float) {}); });
+  }
 }
 
 }  // namespace whit

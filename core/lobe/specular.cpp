@@ -1,6 +1,7 @@
 // Mirror and refraction: the delta lobes.
 #include "core/lobe/eval.h"
 #include "core/lobe/formulas.h"
+#include "core/lobe/table.h"
 
 namespace whit {
 
@@ -127,6 +128,51 @@ int take_lobes(const LobeSet& set, LobeType type, const ShadingBatch& s, const f
   return count_lit(s.n, weight);
 }
 
+/// Hands out delta(i) to the lanes that chose the lobe.
+template <class DeltaOf>
+void draw_delta(const LobeDraw& d, const DeltaOf& delta) {
+  const RGBLanes w = d.lobe.weight;
+  for_lanes(d.s.n, [&](int i) {
+    const Delta to = delta(i);
+    const Vec3f before = d.wi[i];
+    const RGB weight = w[i], weight_before = d.weight[i];
+    const bool mine = d.chosen[i] == d.index;
+    d.wi.set(i, {mine ? to.wi.x : before.x, mine ? to.wi.y : before.y, mine ? to.wi.z : before.z});
+    d.weight.set(i, {mine ? weight.x * to.f : weight_before.x, mine ? weight.y * to.f : weight_before.y,
+                     mine ? weight.z * to.f : weight_before.z});
+  });
+}
+
+void draw_reflection(const LobeDraw& d) {
+  const ShadingBatch& s = d.s;
+  const float* const eta = d.lobe.eta;
+  if (d.lobe.fresnel == FresnelType::One) {
+    draw_delta(d, [&](int i) { return reflect(s.wo[i], s.ns[i], FresnelType::One, 1.0f); });
+  } else {
+    draw_delta(d, [&](int i) { return reflect(s.wo[i], s.ns[i], FresnelType::Dielectric, eta[i]); });
+  }
+}
+
+void draw_transmission(const LobeDraw& d) {
+  const ShadingBatch& s = d.s;
+  const float* const eta = d.lobe.eta;
+  draw_delta(d, [&](int i) { return refract(s.wo[i], s.ns[i], eta[i]); });
+  if (!d.eta2) return;
+  for_lanes(s.n, [&](int i) {
+    const float n = relative_index(dot(s.wo[i], s.ns[i]), eta[i]), before = d.eta2[i];
+    d.eta2[i] = d.chosen[i] == d.index ? n * n : before;
+  });
+}
+
+void scale_reflection(const Lobe& lobe, const ShadingBatch& s, float* to) {
+  if (lobe.fresnel == FresnelType::One) return;
+  for_lanes(s.n, [&](int i) { to[i] *= fresnel_dielectric(dot(s.wo[i], s.ns[i]), lobe.eta[i]); });
+}
+
+void scale_transmission(const Lobe& lobe, const ShadingBatch& s, float* to) {
+  for_lanes(s.n, [&](int i) { to[i] *= 1 - fresnel_dielectric(dot(s.wo[i], s.ns[i]), lobe.eta[i]); });
+}
+
 }  // namespace
 
 int specular_reflection(const LobeSet& set, const ShadingBatch& s, const float* choice_u, const Vec3Lanes& wi,
@@ -150,5 +196,25 @@ int specular_transmission(const LobeSet& set, const ShadingBatch& s, const float
     take_lobe(set, k, chosen, s, wi, weight, [&](int i) { return refract(s.wo[i], s.ns[i], eta[i]); });
   });
 }
+
+const LobeRow lobe_rows::SpecularReflection = {
+    .name = "specular reflection",
+    .effect = Effect::Reflection,
+    .reflects = true,
+    .transmits = false,
+    .specular = true,
+    .scale_strength = scale_reflection,
+    .sample = draw_reflection,
+};
+
+const LobeRow lobe_rows::SpecularTransmission = {
+    .name = "specular transmission",
+    .effect = Effect::Refraction,
+    .reflects = false,
+    .transmits = true,
+    .specular = true,
+    .scale_strength = scale_transmission,
+    .sample = draw_transmission,
+};
 
 }  // namespace whit

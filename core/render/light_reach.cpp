@@ -6,6 +6,7 @@
 
 #include "core/base/box.h"
 #include "core/base/fastmath.h"
+#include "core/lobe/table.h"
 
 namespace whit {
 namespace {
@@ -41,13 +42,10 @@ bool are_within(int n, const Vec3Lanes& v, float limit) {
   return are_within(n, v.x, limit) && are_within(n, v.y, limit) && are_within(n, v.z, limit);
 }
 
-/// Hairs and tabulated BSDFs scatter to both sides.
-bool passes_light(LobeType t) { return is_transmission(t) || t == LobeType::Hair || t == LobeType::Fourier; }
-
 bool only_reflects(const MaterialRun& run) {
   if (!run.scatters) return true;
   return std::none_of(run.lobes.lobes, run.lobes.lobes + run.lobes.count,
-                      [](const Lobe& l) { return !is_specular(l.type) && passes_light(l.type); });
+                      [](const Lobe& l) { return !is_specular(l.type) && row_of(l.type).transmits; });
 }
 
 double largest(const Vec3f& low, const Vec3f& high) {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/lobe/table.h"
+
 namespace whit {
 namespace {
 
@@ -11,29 +13,6 @@ namespace {
 std::string text_of(const Vec3d& v) { return fmt::format("({:.9g}, {:.9g}, {:.9g})", v.x + 0, v.y + 0, v.z + 0); }
 std::string text_of(const Vec3f& v) { return text_of(Vec3d(v)); }
 std::string text_of(const RGB& c) { return fmt::format("[{:.6g} {:.6g} {:.6g}]", c.x, c.y, c.z); }
-
-const char* name_of(LobeType type) {
-  switch (type) {
-    case LobeType::LambertReflection: return "Lambert reflection";
-    case LobeType::LambertTransmission: return "Lambert transmission";
-    case LobeType::OrenNayar: return "Oren-Nayar";
-    case LobeType::MicrofacetReflection: return "microfacet reflection";
-    case LobeType::MicrofacetTransmission: return "microfacet transmission";
-    case LobeType::FresnelBlend: return "Fresnel blend";
-    case LobeType::DisneyDiffuse: return "Disney diffuse";
-    case LobeType::DisneyFakeSubsurface: return "Disney fake subsurface";
-    case LobeType::DisneyRetro: return "Disney retro-reflection";
-    case LobeType::DisneySheen: return "Disney sheen";
-    case LobeType::DisneyClearcoat: return "Disney clearcoat";
-    case LobeType::DisneyReflection: return "Disney reflection";
-    case LobeType::DisneyTransmission: return "Disney transmission";
-    case LobeType::Hair: return "hair";
-    case LobeType::Fourier: return "Fourier";
-    case LobeType::SpecularReflection: return "specular reflection";
-    case LobeType::SpecularTransmission: return "specular transmission";
-  }
-  return "unknown";
-}
 
 }  // namespace
 
@@ -79,7 +58,7 @@ void RoundLog::lobes(const Round& r, int point) {
     if (point < run.first || point >= run.first + run.points.n) continue;
     std::string names;
     for (int l = 0; l < run.lobes.count; ++l) {
-      names += fmt::format("{}{}", l > 0 ? ", " : "", name_of(run.lobes.lobes[l].type));
+      names += fmt::format("{}{}", l > 0 ? ", " : "", row_of(run.lobes.lobes[l].type).name);
     }
     const int material = scene_.shapes[static_cast<size_t>(r.hits_.shape[point])].material;
     const Bound<Material>& bound = scene_.bound.materials[static_cast<size_t>(material)];

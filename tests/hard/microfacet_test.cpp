@@ -88,7 +88,6 @@ double chi_squared_of_facets(float alpha, double cosine) {
   constexpr int kCells = 16, kSamples = 1 << 16;
   Bench bench(4096);
   bench.add(LobeType::MicrofacetReflection, alpha, alpha, 1.5f, FresnelType::One);
-  const LobeFrame frame = make_frame(bench.s);
   const int n = bench.s.n;
   const Vec3f wo = direction(cosine, 0.3);
   for (int i = 0; i < n; ++i) bench.s.wo.set(i, wo);
@@ -99,7 +98,7 @@ double chi_squared_of_facets(float alpha, double cosine) {
   for (int first = 0; first < kSamples; first += n) {
     for (int i = 0; i < n; ++i)
       u[i] = std::min(uniform(random), 0.99999994f), v[i] = std::min(uniform(random), 0.99999994f);
-    sample_lobes(bench.set, bench.s, frame, zero.data(), u.data(), v.data(), bench.wi, bench.f, bench.pdf);
+    bench.sample(zero.data(), u.data(), v.data());
     for (int i = 0; i < n; ++i) {
       if (!(bench.pdf[i] > 0)) continue;
       const Vec3d h = Vec3d(wo) + Vec3d(bench.wi[i]);
@@ -161,8 +160,7 @@ TEST(Hard, MicrofacetsAreNumbers) {
         surface.add(bench, alpha);
         bench.set.lobes[0].eta = bench.constant(eta);
         for (int i = 0; i < n; ++i) bench.s.wo.set(i, directions[i / count]), bench.wi.set(i, directions[i % count]);
-        bench.evaluate();
-        pdf_lobes(bench.set, bench.s, make_frame(bench.s), bench.wi, bench.pdf);
+        bench.evaluate_with_density();
         int wrong = 0;
         for (int i = 0; i < n; ++i) {
           const float values[] = {bench.f.r[i], bench.f.g[i], bench.f.b[i], bench.pdf[i]};

@@ -1,6 +1,4 @@
 // Disney's lobes against their formulas' limits, energy, reciprocity and densities.
-#include "core/lobe/disney.h"
-
 #include <functional>
 
 #include "core/lobe/formulas.h"

@@ -18,7 +18,7 @@ class Bench {
   explicit Bench(int n) {
     s.n = n, s.arena = &arena;
     s.wo = arena.vec3(n), s.ng = arena.vec3(n), s.ns = arena.vec3(n), s.dpdu = arena.vec3(n);
-    wi = arena.vec3(n), f = arena.rgb(n), pdf = arena.floats(n);
+    wi = arena.vec3(n), f = arena.rgb(n), pdf = arena.floats(n), eta2 = arena.floats(n);
     for (int i = 0; i < n; ++i) {
       s.ng.set(i, {0, 0, 1}), s.ns.set(i, {0, 0, 1});
       s.dpdu.set(i, normalize(Vec3f(0.6f, 0.8f, 0)) * 3.0f);
@@ -52,13 +52,23 @@ class Bench {
     return lobe;
   }
   void evaluate() { eval_lobes(set, s, prepare_frame(set, s), wi, f); }
+  /// Values and densities of wi.
+  void evaluate_with_density(LobeKinds kinds = LobeKinds::NonSpecular) {
+    const ArenaScope scratch(arena);
+    eval_lobes(set, s, prepare_frame(set, s), wi, f, pdf, kinds);
+  }
+  /// Directions in wi, their weights in f.
+  void sample(const float* lobe_u, const float* u, const float* v, LobeKinds kinds = LobeKinds::NonSpecular) {
+    const ArenaScope scratch(arena);
+    sample_lobes(set, s, prepare_frame(set, s), lobe_u, u, v, kinds, {wi, f, pdf, eta2});
+  }
 
   Arena arena;
   ShadingBatch s;
   LobeSet set{arena};
   Vec3Lanes wi;
   RGBLanes f;
-  float* pdf;
+  float *pdf, *eta2;
 };
 
 inline Vec3f direction(double cosine, double phi) {
@@ -72,7 +82,6 @@ inline double albedo(Bench& bench, const Vec3f& wo) {
   const int side = 512;
   const int n = bench.s.n;
   std::vector<float> lobe_u(n), u(n), v(n);
-  const LobeFrame frame = make_frame(bench.s);
   for (int i = 0; i < n; ++i) bench.s.wo.set(i, wo);
   double sum = 0;
   for (int first = 0; first < side * side; first += n) {
@@ -82,8 +91,8 @@ inline double albedo(Bench& bench, const Vec3f& wo) {
       u[i] = (static_cast<float>(k / side) + 0.5f) / side;
       v[i] = (static_cast<float>(k % side) + 0.5f) / side;
     }
-    sample_lobes(bench.set, bench.s, frame, lobe_u.data(), u.data(), v.data(), bench.wi, bench.f, bench.pdf);
-    for (int i = 0; i < n; ++i) sum += bench.pdf[i] > 0 ? bench.f.r[i] / bench.pdf[i] : 0.0f;
+    bench.sample(lobe_u.data(), u.data(), v.data());
+    for (int i = 0; i < n; ++i) sum += bench.f.r[i];
   }
   return sum / (side * side);
 }
@@ -91,7 +100,6 @@ inline double albedo(Bench& bench, const Vec3f& wo) {
 /// Pearson's test of sampled directions against the integral of the density over a grid of solid angles.
 inline void chi_squared(Bench& bench, const Vec3f& wo, const char* what) {
   constexpr int kCos = 20, kPhi = 20, kSub = 24, kSamples = 1 << 18;
-  const LobeFrame frame = make_frame(bench.s);
   const int n = bench.s.n;
   for (int i = 0; i < n; ++i) bench.s.wo.set(i, wo);
 
@@ -106,8 +114,8 @@ inline void chi_squared(Bench& bench, const Vec3f& wo, const char* what) {
   }
   for (size_t first = 0; first < points.size(); first += n) {
     const int count = std::min<int>(n, static_cast<int>(points.size() - first));
-    for (int i = 0; i < count; ++i) bench.wi.set(i, points[first + i]);
-    pdf_lobes(bench.set, bench.s, frame, bench.wi, bench.pdf);
+    for (int i = 0; i < n; ++i) bench.wi.set(i, i < count ? points[first + i] : wo);
+    bench.evaluate_with_density();
     for (int i = 0; i < count; ++i)
       expected[(first + i) / (kSub * kSub)] += bench.pdf[i] * cell / (kSub * kSub) * kSamples;
   }
@@ -118,7 +126,7 @@ inline void chi_squared(Bench& bench, const Vec3f& wo, const char* what) {
   std::vector<float> lobe_u(n), u(n), v(n);
   for (int first = 0; first < kSamples; first += n) {
     for (int i = 0; i < n; ++i) lobe_u[i] = number(), u[i] = number(), v[i] = number();
-    sample_lobes(bench.set, bench.s, frame, lobe_u.data(), u.data(), v.data(), bench.wi, bench.f, bench.pdf);
+    bench.sample(lobe_u.data(), u.data(), v.data());
     for (int i = 0; i < n; ++i) {
       if (bench.pdf[i] <= 0) continue;
       const int row = std::min(kCos - 1, static_cast<int>((bench.wi.z[i] + 1) / 2 * kCos));

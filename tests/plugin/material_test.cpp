@@ -38,7 +38,7 @@ std::vector<float> answers(const Material& material, const ShadingBatch& s, cons
   eval_lobes(set, s, prepare_frame(set, s), light, f);
   specular_reflection(set, s, half, wr, r);
   specular_transmission(set, s, half, wt, t);
-  sample_lobes(set, s, make_frame(s), half, half, half, wg, g, pdf);
+  sample_lobes(set, s, prepare_frame(set, s), half, half, half, LobeKinds::NonSpecular, {wg, g, pdf});
   std::vector<float> out;
   for (int i = 0; i < s.n; ++i) {
     for (const RGBLanes& c : {f, r, t, g}) out.insert(out.end(), {c.r[i], c.g[i], c.b[i]});
@@ -87,9 +87,10 @@ TEST(EveryMaterial, ReflectsAtMostWhatArrives) {
     }
     const Vec3Lanes wi = points.arena.vec3(n);
     const RGBLanes f = points.arena.rgb(n);
-    sample_lobes(set, points.s, make_frame(points.s), lobe_u.data(), u.data(), v.data(), wi, f, pdf.data());
+    sample_lobes(set, points.s, prepare_frame(set, points.s), lobe_u.data(), u.data(), v.data(), LobeKinds::NonSpecular,
+                 {wi, f, pdf.data()});
     double sum = 0;
-    for (int i = 0; i < n; ++i) sum += pdf[i] > 0 ? f.g[i] / pdf[i] : 0.0f;
+    for (int i = 0; i < n; ++i) sum += f.g[i];
     sum /= n;
     specular_reflection(set, points.s, lobe_u.data(), wi, f);
     sum += f.g[0];
