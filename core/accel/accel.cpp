@@ -97,6 +97,7 @@ struct ShadowRays {
   RTCScene world;
   const RayLanes& rays;
 
+  const RayEnd& end(unsigned id) const { return end_of(rays, static_cast<int>(id)); }
   bool meets_before_end(const GeometryUser& user, const ObjectPacket& packet, int k, unsigned id, unsigned instance,
                         float time) const;
   bool meets_before_end(const ExactTriangle& triangle, double t, unsigned id, unsigned instance, float time) const;
@@ -173,11 +174,15 @@ void analytic_intersect(const RTCIntersectFunctionNArguments* args) {
 void analytic_occluded(const RTCOccludedFunctionNArguments* args) {
   const auto& user = *static_cast<const GeometryUser*>(args->geometryUserPtr);
   const ShadowRays* shadow = shadow_of(args->context);
-  const int unshaded_by =
-      shadow ? shadow->rays.end->unshaded_by : static_cast<const QueryContext*>(args->context)->unshaded_by;
-  if (unshaded_by == user.unshaded_by_itself) return;
+  const bool one_end = !shadow || !shadow->rays.ends;
+  const int unshaded_by = !one_end ? -1
+                          : shadow ? shadow->rays.end->unshaded_by
+                                   : static_cast<const QueryContext*>(args->context)->unshaded_by;
+  if (one_end && unshaded_by == user.unshaded_by_itself) return;
   const auto stands = [&](const ObjectPacket& packet, int k) {
     const auto lane = static_cast<unsigned>(packet.lane[k]);
+    if (!one_end && shadow->end(RTCRayN_id(args->ray, args->N, lane)).unshaded_by == user.unshaded_by_itself)
+      return false;
     return !shadow || shadow->meets_before_end(user, packet, k, RTCRayN_id(args->ray, args->N, lane),
                                                args->context->instID[0], RTCRayN_time(args->ray, args->N, lane));
   };
@@ -358,6 +363,8 @@ bool ShadowRays::meets_before_end(const GeometryUser& user, const RTCFilterFunct
   const Vec3f n(RTCHitN_Ng_x(args->hit, width, i), RTCHitN_Ng_y(args->hit, width, i),
                 RTCHitN_Ng_z(args->hit, width, i));
   const auto id = static_cast<int>(RTCRayN_id(args->ray, width, i));
+  const RayEnd& end = end_of(rays, id);
+  if (end.on == RayEnd::On::Nothing) return true;
   // How far the end is behind the triangle's plane, in the space of its group, as far as floats tell.
   const float behind = (rays.t_max[id] - RTCRayN_tfar(args->ray, width, i)) * std::abs(n.dot(d)) / n.length();
   const float unsure = static_cast<float>(kNearEnd) * d.length();
@@ -368,7 +375,7 @@ bool ShadowRays::meets_before_end(const GeometryUser& user, const RTCFilterFunct
   const bool instanced = instance != RTC_INVALID_GEOMETRY_ID;
   if (instanced) placed = instance_to_render(world, instance, RTCRayN_time(args->ray, width, i));
   return end_triangle(user.mesh, RTCHitN_primID(args->hit, width, i), instanced ? &placed : nullptr)
-      .separates(Vec3d(rays.o[id]), end_point(rays, id), rays.end->error);
+      .separates(Vec3d(rays.o[id]), end_point(rays, id), end.error);
 }
 
 bool ShadowRays::meets_before_end(const ExactTriangle& triangle, double t, unsigned id, unsigned instance,
@@ -381,7 +388,7 @@ bool ShadowRays::meets_before_end(const ExactTriangle& triangle, double t, unsig
     const Mat4d placed = instance_to_render(world, instance, time);
     for (Vec3d* corner : {&here.a, &here.b, &here.c}) *corner = transform_point(placed, *corner);
   }
-  return here.separates(Vec3d(rays.o[lane]), end_point(rays, lane), rays.end->error);
+  return here.separates(Vec3d(rays.o[lane]), end_point(rays, lane), end(id).error);
 }
 
 bool ShadowRays::meets_before_end(const GeometryUser& user, const ObjectPacket& packet, int k, unsigned id,
@@ -389,10 +396,10 @@ bool ShadowRays::meets_before_end(const GeometryUser& user, const ObjectPacket& 
   const AnalyticShape& shape = *user.analytic;
   const int lane = static_cast<int>(id);
   const double t = packet.t[k], t_end = static_cast<double>(rays.t_max[lane]);
-  if (rays.end->on == RayEnd::On::Nothing) return t < t_end;
+  if (end(id).on == RayEnd::On::Nothing) return t < t_end;
   // Only an origin as near to the surface as the end gets here with a surface that the end is on.
   if (t < 0.5 * t_end) return true;
-  if (&shape == rays.end->analytic && std::abs(t - t_end) < 0.1 * kNearEnd) return false;
+  if (&shape == end(id).analytic && std::abs(t - t_end) < 0.1 * kNearEnd) return false;
   const Vec3d o(packet.ox[k], packet.oy[k], packet.oz[k]), d(packet.dx[k], packet.dy[k], packet.dz[k]);
   const Box3d box = shape.object_bounds();
   const Vec3d near = o + d * t_end, room = box.size() * 1e-3 + Vec3d(1e-3 * box.size().length());
@@ -408,7 +415,7 @@ bool ShadowRays::meets_before_end(const GeometryUser& user, const ObjectPacket& 
         rounding_of_size(box, to_render) +
         2 * kRounding * (transform_point(to_render, at.p).length() + transform_point(placed, {0, 0, 0}).length());
   }
-  return hit.hides(end_point(rays, lane), rays.end->error);
+  return hit.hides(end_point(rays, lane), end(id).error);
 }
 
 /// Drops the hits of triangles that the end of their ray lies on, or that are behind it.
@@ -419,6 +426,44 @@ void end_filter(const RTCFilterFunctionNArguments* args) {
     if (args->valid[i] && !shadow.meets_before_end(user, args, i)) args->valid[i] = 0;
   }
 }
+
+/// How far beyond its end a ray is traced, for what decides there knows better than floats where the end is
+/// (core/accel/ray_end.h). Of a plane that nothing else is near to, t_max is in front.
+struct Beyond {
+  float stretch = 1, room = 0;
+  explicit Beyond(const RayEnd& end) {
+    const bool touched = end.on != RayEnd::On::Nothing && end.touched;
+    stretch = touched ? 2.0f : 1.0f;
+    if (touched || (end.on != RayEnd::On::Nothing && end.on != RayEnd::On::Plane))
+      room = static_cast<float>(kNearEnd / 2);
+  }
+};
+
+/// The ends of the shadow rays of a call: one, or one for each.
+struct ShadowEnds {
+  const RayLanes& rays;
+  bool any = false, touched = false;  ///< Whether some ray ends on something; on something that is touched.
+
+  explicit ShadowEnds(const RayLanes& r) : rays(r) {
+    for (int i = 0; i < (rays.ends ? rays.n : rays.end ? 1 : 0); ++i) {
+      const RayEnd& end = end_of(rays, i);
+      any |= end.on != RayEnd::On::Nothing;
+      touched |= end.on != RayEnd::On::Nothing && end.touched;
+    }
+  }
+  void lengthen(int first, int count, float* t_far) const {
+    if (!any) return;
+    if (!rays.ends) {
+      const Beyond beyond(*rays.end);
+      for (int i = 0; i < count; ++i) t_far[i] = t_far[i] * beyond.stretch + beyond.room;
+      return;
+    }
+    for (int i = 0; i < count; ++i) {
+      const Beyond beyond(*rays.ends[first + i]);
+      t_far[i] = t_far[i] * beyond.stretch + beyond.room;
+    }
+  }
+};
 
 /// Embree's packets of N rays.
 template <int N>
@@ -501,8 +546,8 @@ struct Accel::Impl {
   std::string error;
 
   template <int N>
-  void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
-  void intersect_packets(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
+  void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
+  void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
   template <int N>
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
   void sweep_moving();
@@ -691,7 +736,7 @@ std::string Accel::watch_ends() {
 }
 
 template <int N>
-void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, bool coherent) const {
   const RTCScene scene = groups[kWorld].scene;
   const int world_first = groups[kWorld].first_shape, world_shapes = groups[kWorld].shape_count;
   EmbreeQuery query(coherent || worth <= small_scene);
@@ -720,7 +765,7 @@ void Accel::Impl::intersect(const RayLanes& rays, const HitLanes& hits, bool coh
   }
 }
 
-void Accel::Impl::intersect_packets(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+void Accel::Impl::intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const {
   switch (width) {
     case 16: intersect<16>(rays, hits, coherent); break;
     case 8: intersect<8>(rays, hits, coherent); break;
@@ -728,9 +773,9 @@ void Accel::Impl::intersect_packets(const RayLanes& rays, const HitLanes& hits, 
   }
 }
 
-void Accel::intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const {
+void Accel::intersect(const RayLanes& rays, const Hits& hits, bool coherent) const {
   if (impl_->record) impl_->record->add(coherent ? RayKind::Camera : RayKind::Secondary, rays);
-  const auto trace = [&](const RayLanes& r, const HitLanes& h) { impl_->intersect_packets(r, h, coherent); };
+  const auto trace = [&](const RayLanes& r, const Hits& h) { impl_->intersect_packets(r, h, coherent); };
   trace(rays, hits);
   if (impl_->second_look && coherent && impl_->has_meshes && impl_->robust) SecondLook().look(rays, hits, trace);
   if (impl_->instance_group.empty()) return;
@@ -747,18 +792,14 @@ void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
   EmbreeQuery query(false);
   const ShadowRays shadow{groups[kWorld].scene, rays};
-  const bool ends = rays.end && rays.end->on != RayEnd::On::Nothing, touched = ends && rays.end->touched;
-  if (ends) query.set_shadow(&shadow, touched ? end_filter : nullptr);
-  // Farther than the end, for what decides there knows better than floats where the end is (core/accel/ray_end.h). Of a
-  // plane that nothing else is near to, t_max is in front.
-  const float stretch = touched ? 2.0f : 1.0f;
-  const float beyond = touched || (ends && rays.end->on != RayEnd::On::Plane) ? static_cast<float>(kNearEnd / 2) : 0.0f;
+  const ShadowEnds ends(rays);
+  if (ends.any) query.set_shadow(&shadow, ends.touched ? end_filter : nullptr);
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   for (int first = 0; first < rays.n; first += N) {
     const int count = std::min(N, rays.n - first);
     load_packet<N>(rays, first, count, packet, valid);
-    for (int i = 0; i < N; ++i) packet.tfar[i] = packet.tfar[i] * stretch + beyond;
+    ends.lengthen(first, count, packet.tfar);
     query.trace(valid, groups[kWorld].scene, packet);
     for (int i = 0; i < count; ++i) blocked[first + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
   }

@@ -15,7 +15,7 @@
 #include "core/accel/exact_triangle.h"
 #include "core/accel/ray_end.h"
 #include "core/base/vec.h"
-#include "core/batch/lanes.h"
+#include "core/batch/rays.h"
 #include "core/plugin/shape.h"
 
 namespace whit {
@@ -28,15 +28,7 @@ struct RayLanes {
   const float* time = nullptr;   ///< In [0,1] over the transform times; null: 0.
   const RayEnd* end = nullptr;   ///< Shadow rays: what they all end on; null: just t_max.
   Vec3Lanes q{};                 ///< Shadow rays to a plane: the points they end on, if known better than by t_max.
-};
-
-/// The nearest hits of n rays.
-struct HitLanes {
-  float* t = nullptr;                ///< Distance.
-  int32_t* shape = nullptr;          ///< Index given to add_*(), -1 for a miss.
-  uint32_t* prim = nullptr;          ///< Triangle or curve segment within the shape.
-  int32_t* instance = nullptr;       ///< Index of the instance, -1 for world geometry.
-  float *u = nullptr, *v = nullptr;  ///< Barycentric weights of vertices 1 and 2; along and across a curve, in [0,1].
+  const RayEnd* const* ends = nullptr;  ///< Shadow rays: what each ends on; null: all on `end`.
 };
 
 /// Decides whether a surface is there at a hit (alpha textures). Called from worker threads.
@@ -99,7 +91,7 @@ class Accel {
   std::string watch_ends();
 
   /// `coherent`: neighbouring rays are alike (camera rays). Decides the speed, and the rays' kind in a record.
-  void intersect(const RayLanes& rays, const HitLanes& hits, bool coherent) const;
+  void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
   /// Writes 1 where something is hit before t_max, else 0.
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
 

@@ -42,8 +42,10 @@ double rounding_of_size(const Box3d& object_box, const Mat4d& to_render) {
   return largest * 0x1p-24;
 }
 
+const RayEnd& end_of(const RayLanes& rays, int lane) { return rays.ends ? *rays.ends[lane] : *rays.end; }
+
 Vec3d end_point(const RayLanes& rays, int lane) {
-  const RayEnd& end = *rays.end;
+  const RayEnd& end = end_of(rays, lane);
   if (end.on == RayEnd::On::Point) return end.p;
   const Vec3d o(rays.o[lane]), d(rays.d[lane]);
   const double t = static_cast<double>(rays.t_max[lane]);

@@ -46,6 +46,9 @@ struct RayEnd {
   const AnalyticShape* analytic = nullptr;
 };
 
+/// What a shadow ray ends on.
+const RayEnd& end_of(const RayLanes& rays, int lane);
+
 /// The point on which a ray ends, in render space and double precision.
 Vec3d end_point(const RayLanes& rays, int lane);
 

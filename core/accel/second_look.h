@@ -18,9 +18,9 @@ class SecondLook {
  public:
   static constexpr int kWidth = 128;
 
-  /// Looks with trace(RayLanes, HitLanes) for something nearer than what was hit.
+  /// Looks with trace(RayLanes, Hits) for something nearer than what was hit.
   template <class Trace>
-  void look(const RayLanes& rays, const HitLanes& hits, const Trace& trace) {
+  void look(const RayLanes& rays, const Hits& hits, const Trace& trace) {
     for (int first = 0; first < rays.n; first += kWidth) {
       for (const bool across : {false, true}) {
         gather(rays, hits, first);
@@ -41,7 +41,7 @@ class SecondLook {
   };
 
   /// Gathers those of kWidth rays that are to be looked at.
-  void gather(const RayLanes& rays, const HitLanes& hits, int first) {
+  void gather(const RayLanes& rays, const Hits& hits, int first) {
     n_ = 0;
     for (int i = first; i < std::min(rays.n, first + kWidth); ++i) {
       lane_[n_] = i;
@@ -53,11 +53,11 @@ class SecondLook {
   /// gets its first hit: at a silhouette one side misses, so nothing grows by this. What is only as much nearer as the
   /// turn makes it is the same surface.
   template <class Trace>
-  void look_to_both_sides(const RayLanes& rays, const HitLanes& hits, bool across, const Trace& trace) {
+  void look_to_both_sides(const RayLanes& rays, const Hits& hits, bool across, const Trace& trace) {
     for (const float turn : {kTurn, -kTurn}) {
       if (n_ == 0) return;
       load(rays, hits, across, turn);
-      trace(RayLanes{n_, lanes(o_), lanes(d_), t_max_, time_}, HitLanes{t_, shape_, prim_, instance_, u_, v_});
+      trace(RayLanes{n_, lanes(o_), lanes(d_), t_max_, time_}, Hits{t_, shape_, prim_, instance_, u_, v_});
       int left = 0;
       for (int i = 0; i < n_; ++i) {
         if (shape_[i] < 0) continue;
@@ -71,7 +71,7 @@ class SecondLook {
 
   static Vec3Lanes lanes(float (&v)[3][kWidth]) { return {v[0], v[1], v[2]}; }
 
-  void load(const RayLanes& rays, const HitLanes& hits, bool across, float turn) {
+  void load(const RayLanes& rays, const Hits& hits, bool across, float turn) {
     for (int i = 0; i < n_; ++i) {
       const int from = lane_[i];
       const Vec3f d = rays.d[from];
@@ -81,7 +81,7 @@ class SecondLook {
       time_[i] = rays.time ? rays.time[from] : 0;
     }
   }
-  static void accept(const Kept& k, int to, const HitLanes& hits) {
+  static void accept(const Kept& k, int to, const Hits& hits) {
     hits.t[to] = k.t, hits.u[to] = k.u, hits.v[to] = k.v;
     hits.shape[to] = k.shape, hits.instance[to] = k.instance, hits.prim[to] = k.prim;
   }

@@ -34,6 +34,8 @@ constexpr EffectInfo kInfos[] = {
      "2 per sample", 0, 0},
     {"instancing", "objects that are placed", "no placed objects", "points taken to render space and back", "", 0, 4},
     {"interfaces", "surfaces without a material", "none of these surfaces", "rays sent on behind them", "", 0, 0},
+    {"indirect", "light by way of other surfaces that scatter", "direct light alone",
+     "rays sampled from lobes, traced in another round", "4 per bounce", 52, 32},
 };
 static_assert(std::size(kInfos) == kEffects);
 

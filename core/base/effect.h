@@ -26,6 +26,7 @@ enum class Effect : uint8_t {
   DepthOfField,       ///< A lens with an area.
   Instancing,         ///< Objects that are placed.
   Interfaces,         ///< Surfaces without a material, which rays pass.
+  Indirect,           ///< Light that came by way of other surfaces that scatter: paths.
   kCount
 };
 inline constexpr unsigned kEffects = static_cast<unsigned>(Effect::kCount);

@@ -24,4 +24,26 @@ inline Vec3f uniform_sphere(float u, float v) {
   return {sin_theta * phi.cos, sin_theta * phi.sin, 1 - 2 * v};
 }
 
+/// The hemisphere around +z from (u, v) in [0,1)^2, in proportion to the cosine. Density cos / pi.
+inline Vec3f cosine_hemisphere(float u, float v) {
+  const float r = safe_sqrt(u);
+  const SinCos phi = sin_cos_2pi(v);
+  return {r * phi.cos, r * phi.sin, safe_sqrt(1 - u)};
+}
+
+/// The hemisphere around +z, uniformly. Density 1/(2 pi).
+inline Vec3f uniform_hemisphere(float u, float v) {
+  const float sin_theta = safe_sqrt(1 - u * u);
+  const SinCos phi = sin_cos_2pi(v);
+  return {sin_theta * phi.cos, sin_theta * phi.sin, u};
+}
+
+/// The k-th point of a lattice in [0,1)^2 that begins at `first`: steps by powers of the inverse plastic number, which
+/// leave no large gaps at any count. Source: Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018.
+inline Vec2f lattice_point(const Vec2f& first, int k) {
+  const auto step = [k](double x) { return static_cast<float>(k * x - std::floor(k * x)); };
+  const auto wrapped = [](float x) { return x < 1 ? x : x - 1; };
+  return {wrapped(first.x + step(0.7548776662466927)), wrapped(first.y + step(0.5698402909980532))};
+}
+
 }  // namespace whit

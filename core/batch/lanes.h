@@ -38,4 +38,10 @@ struct RGBLanes {
   explicit operator bool() const { return r != nullptr; }
 };
 
+/// a times b, lane by lane, in place of a.
+inline RGBLanes times(int n, const RGBLanes& a, const RGBLanes& b) {
+  for_lanes(n, [&](int i) { a.r[i] *= b.r[i], a.g[i] *= b.g[i], a.b[i] *= b.b[i]; });
+  return a;
+}
+
 }  // namespace whit

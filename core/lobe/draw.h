@@ -2,6 +2,7 @@
 // normal.
 #pragma once
 
+#include "core/base/sampling.h"
 #include "core/base/fastmath.h"
 #include "core/lobe/table.h"
 
@@ -55,14 +56,6 @@ void draw_one_by_one(const LobeDraw& d, const Direction& direction) {
     d.wi.set(i, wo.z != 0 ? normalize(to_render(t, n, direction(i, wo, d.u[i], d.v[i]))) : Vec3f(0, 0, 0));
   }
 }
-
-/// A direction of the upper hemisphere by the density cos / pi. Malley's method, PBR book 13.6.3.
-inline Vec3f cosine_hemisphere(float u, float v) {
-  const float r = safe_sqrt(u);
-  const SinCos phi = sin_cos_2pi(v);
-  return {r * phi.cos, r * phi.sin, safe_sqrt(1 - u)};
-}
-
 inline float side_of(float z) { return z < 0 ? -1.0f : 1.0f; }
 
 /// Draws evenly lit directions on wo's side, as all lobes do that are more or less diffuse.

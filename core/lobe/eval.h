@@ -19,7 +19,7 @@ LobeFrame prepare_frame(const LobeSet& set, const ShadingBatch& s);
 LobeFrame make_frame(const ShadingBatch& s);
 
 /// Which lobes a direction is sampled from.
-enum class LobeKinds : uint8_t { All, NonSpecular };
+enum class LobeKinds : uint8_t { All, NonSpecular, Specular };
 
 /// out f = sum of the non-specular lobes f(wo, wi) |wi . ns|, per steradian, for s.n directions wi. If `pdf` is not null:
 /// the density (solid angle) with which sample_lobes() of the same kinds chooses wi (with All: including the probability

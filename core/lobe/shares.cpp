@@ -7,7 +7,9 @@ namespace whit {
 
 namespace {
 
-bool is_of(const Lobe& lobe, LobeKinds kinds) { return kinds == LobeKinds::All || !is_specular(lobe.type); }
+bool is_of(const Lobe& lobe, LobeKinds kinds) {
+  return kinds == LobeKinds::All || is_specular(lobe.type) == (kinds == LobeKinds::Specular);
+}
 
 /// The luminance of the weights, kept from overflowing in a sum.
 void luminances(const Lobe& lobe, int n, float* to) {

@@ -1,43 +1,48 @@
-// Integrators say what happens to light; the renderer moves the batches. They meet here.
+// Integrators say what happens to light; the renderer moves the batches. They meet in core/plugin/transport.h.
 #pragma once
 
+#include <optional>
+
+#include "core/plugin/light.h"
 #include "core/plugin/param.h"
 
 namespace whit {
 
-/// One batch of rays of the same depth on its way through the stages. Implemented by core/render.
-class RayRound {
- public:
-  virtual ~RayRound() = default;
-  /// Specular bounces so far, 0 for camera rays.
-  virtual int depth() const = 0;
-  /// Finds the nearest surfaces. Surfaces of interface materials are passed through.
-  virtual void intersect() = 0;
-  /// Adds, for rays that hit nothing, the radiance of the lights at infinity.
-  virtual void add_escaped() = 0;
-  /// Computes the surface points of the hits, grouped by material, with their lobes.
-  virtual void find_surfaces() = 0;
-  /// Adds the emission of surfaces that emit.
-  virtual void add_emitted() = 0;
-  /// Number of lights that can be sampled, and the direct light of one of them, with shadows.
-  virtual int light_count() const = 0;
-  virtual void add_direct(int light) = 0;
-  /// Sends rays on in the mirror direction and in the refracted direction of specular lobes, for the next round.
-  virtual void spawn_specular() = 0;
-};
+class Transport;
+struct Rays;
 
 class Integrator : public Plugin {
  public:
   static constexpr const char* kCategory = "integrator";
-  /// What happens to one round of rays: called once per batch and depth.
-  virtual void shade(RayRound& round) const = 0;
-  /// Rounds of rays at most (maxdepth).
+  /// What happens to one batch of rays of the same depth. `rays` is the integrator's to change.
+  virtual void shade(Rays& rays, Transport& transport) const = 0;
+
+  /// Depths of rays at most, those of the camera counted.
   virtual int max_depth() const = 0;
-  /// The part of the picture "pixelbounds" restricts rendering to: x0, x1, y0, y1 in pixels; all by default.
+  /// The effects it can simulate; the plan leaves out what else a scene calls for.
+  virtual EffectSet simulates() const { return EffectSet::all() - EffectSet{Effect::Indirect}; }
+  /// How many sample dimensions one bounce takes; the first `lights` of them are those of sampling every light.
+  virtual int dimensions(int lights) const = 0;
+  /// Whether rays after the camera's carry differentials, and whether all carry the density of their direction.
+  virtual bool keeps_differentials() const { return true; }
+  virtual bool keeps_densities() const { return false; }
+  /// How lights are chosen, if it has one chosen for each point.
+  virtual std::optional<LightStrategy> light_strategy() const { return {}; }
+
+  IntegerList bounds;  ///< "pixelbounds".
+  /// The part of the picture that rendering is restricted to: x0, x1, y0, y1 in pixels; all by default.
   const std::vector<int>& pixel_bounds() const { return pixel_bounds_; }
 
- protected:
+  void check(Diagnostics& diagnostics, SourcePos statement) override;
+
+ private:
   std::vector<int> pixel_bounds_;
 };
+
+/// The parameter that all integrators have.
+inline auto pixelbounds_param() {
+  return param(&Integrator::bounds, "pixelbounds", Unit::Pixels,
+               "Renders only this part, x0 x1 y0 y1; the rest is black.");
+}
 
 }  // namespace whit

@@ -32,6 +32,9 @@ struct LightHit {
   Vec3f p, ng;  ///< The point and the unit normal there, which points to the front.
 };
 
+/// How a light is chosen where only one is sampled for each point.
+enum class LightStrategy : uint8_t { Spatial, Uniform, Power };
+
 class Light : public Plugin {
  public:
   static constexpr const char* kCategory = "light";
@@ -54,13 +57,17 @@ class Light : public Plugin {
   virtual RGB emitted(const LightHit&) const { return RGB(0.0f); }
   /// Whether such a surface has two fronts.
   virtual bool is_two_sided() const { return false; }
-  /// Adds the radiance arriving along n escaped rays (origin o, unit direction d, render space) to out.
-  virtual void add_escaped(int /*n*/, const Vec3Lanes& /*o*/, const Vec3Lanes& /*d*/, const RGBLanes& /*out*/) const {}
+  /// Adds the radiance arriving along n escaped rays (origin o, unit direction d, render space) to out. Unless null,
+  /// `pdf` becomes that of the directions, as below.
+  virtual void add_escaped(int /*n*/, const Vec3Lanes& /*o*/, const Vec3Lanes& /*d*/, const RGBLanes& /*out*/,
+                           float* /*pdf*/) const {}
   /// Density (solid angle) with which sample() would choose unit direction d from point p: for tests and
   /// multiple importance sampling. 0 for delta lights.
   virtual float pdf(const Vec3f& /*p*/, const Vec3f& /*d*/) const { return 0; }
   /// The same from a ray's origin for the direction in which it met the light's surface.
   virtual float pdf(const LightHit& hit) const { return pdf(hit.o, hit.d); }
+  /// How often the scene wants it sampled at each point, by integrators that sample all lights (pbrt's "samples").
+  virtual int sample_count() const { return 1; }
   /// Where sample() finds light. Asked after prepare(); the default rules nothing out.
   virtual LightReach reach() const { return {}; }
   /// The point of render space from which all its light comes, if there is one. Asked after prepare().
@@ -77,6 +84,8 @@ class AreaLight : public Plugin {
   /// Emitted radiance, the same in every direction of the emitting side(s).
   virtual RGB radiance() const = 0;
   virtual bool two_sided() const = 0;
+  /// As Light::sample_count().
+  virtual int sample_count() const { return 1; }
 };
 
 }  // namespace whit

@@ -1,19 +1,12 @@
-// Lights that leave all points of a round dark, known from where they shine, so that the round need not sample them.
+// Lights that leave all points of a batch dark, known from where they shine, so that it need not sample them.
 #pragma once
 
 #include <span>
 
 #include "core/plugin/light_reach.h"
-#include "core/render/worker.h"
+#include "core/render/points.h"
 
 namespace whit {
-
-/// What is found out about the points of a round once, for all lights.
-struct PointBounds {
-  bool bounded = false;        ///< False when a coordinate is not finite, or so large that nothing can be said.
-  bool only_reflects = false;  ///< Light from behind the side that is seen does nothing anywhere.
-  Vec3f low{0, 0, 0}, high{0, 0, 0};
-};
 
 PointBounds bounds_of(const ShadingBatch& points, std::span<const MaterialRun> runs);
 

@@ -14,6 +14,7 @@ void RenderStatistics::note_invalid(Vec2i pixel, uint32_t sample) {
 void RenderStatistics::add(const RenderStatistics& o) {
   camera_samples += o.camera_samples;
   camera_rays += o.camera_rays, reflection_rays += o.reflection_rays, refraction_rays += o.refraction_rays;
+  indirect_rays += o.indirect_rays, probe_rays += o.probe_rays;
   passing_rays += o.passing_rays, shadow_rays += o.shadow_rays;
   surface_points += o.surface_points, footprints += o.footprints;
   time_samples += o.time_samples, lens_samples += o.lens_samples;

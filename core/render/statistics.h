@@ -5,12 +5,14 @@
 
 #include "core/base/vec.h"
 #include "core/batch/stage_clock.h"
+#include "core/plugin/transport.h"
 
 namespace whit {
 
 struct RenderStatistics {
   int64_t camera_samples = 0;
-  int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, passing_rays = 0, shadow_rays = 0;
+  int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, indirect_rays = 0;
+  int64_t passing_rays = 0, shadow_rays = 0, probe_rays = 0;
   std::array<double, kStages> stage_seconds{};  ///< Over all workers; zero when stages are not timed.
   int64_t surface_points = 0, footprints = 0;
   int64_t time_samples = 0, lens_samples = 0;
@@ -23,7 +25,15 @@ struct RenderStatistics {
   Vec2i first_invalid_pixel{-1, -1};  ///< In picture order.
   uint32_t first_invalid_sample = 0;
 
-  int64_t rays() const { return camera_rays + reflection_rays + refraction_rays + passing_rays + shadow_rays; }
+  int64_t rays() const {
+    return camera_rays + reflection_rays + refraction_rays + indirect_rays + passing_rays + shadow_rays +
+           probe_rays;
+  }
+  void count(Onward::Kind kind, int64_t rays) {
+    (kind == Onward::Kind::Mirrored    ? reflection_rays
+     : kind == Onward::Kind::Refracted ? refraction_rays
+                                       : indirect_rays) += rays;
+  }
   void add(const RenderStatistics& o);
   void note_invalid(Vec2i pixel, uint32_t sample);
 };

@@ -203,10 +203,6 @@ Vec3f to_float(const Vec3d& v) {
   return (d - m * (m.dot(d) / length2)) * (1 / std::sqrt(length2));
 }
 
-bool has_instances(const Scene& scene) {
-  return kKnowsInstances && (!scene.instances.empty() || scene.plan.everything_on);
-}
-
 /// The group's local space of a hit: render space itself for world geometry.
 Mat4d render_to_local(const Scene& scene, const SurfaceHits& h, int i) {
   if (h.instance[i] < 0) return Mat4d();
@@ -303,7 +299,7 @@ void object_hits(const Scene& scene, const SurfaceHits& h, int first, const Mat4
     };
     out.p.set(i, {at(h.o.x, h.d.x), at(h.o.y, h.d.y), at(h.o.z, h.d.z)});
   });
-  for (int i = 0; i < out.n && has_instances(scene); ++i) {
+  for (int i = 0; i < out.n && scene.has_instances; ++i) {
     if (h.instance[first + i] >= 0) out.p.set(i, transform_point(render_to_local(scene, h, first + i), out.p[i]));
   }
   for_lanes(out.n, [&](int i) {
@@ -505,8 +501,9 @@ void compute_footprints(const SurfaceHits& h, const ShadingBatch& s, const Geome
       const float t = along != 0 ? dot(n, p - o) / along : 0.0f;
       return o + d * t - p;
     };
-    Vec3f dpdx = meet(h.rx_o[i], h.rx_d[i]), dpdy = meet(h.ry_o[i], h.ry_d[i]);
-    const bool good = std::abs(dot(n, h.rx_d[i])) > 0 && std::abs(dot(n, h.ry_d[i])) > 0;
+    Vec3f dpdx = meet(h.differentials.rx_o[i], h.differentials.rx_d[i]),
+          dpdy = meet(h.differentials.ry_o[i], h.differentials.ry_d[i]);
+    const bool good = std::abs(dot(n, h.differentials.rx_d[i])) > 0 && std::abs(dot(n, h.differentials.ry_d[i])) > 0;
     const float keep = good ? 1.0f : 0.0f;
     dpdx = dpdx * keep, dpdy = dpdy * keep;
     s.dpdx.set(i, dpdx), s.dpdy.set(i, dpdy);
@@ -552,7 +549,7 @@ ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& a
       curve_surfaces(scene, h, first, run, partials);
     }
   }
-  if (has_instances(scene)) place_surfaces(scene, h, s, g);
+  if (scene.has_instances) place_surfaces(scene, h, s, g);
   if (h.has_differentials()) compute_footprints(h, s, g);
   return s;
 }

@@ -2,28 +2,16 @@
 #pragma once
 
 #include "core/batch/arena.h"
+#include "core/batch/rays.h"
 #include "core/batch/shading.h"
 #include "core/scene/scene.h"
 
 namespace whit {
 
-/// The direction of the differential rays of a ray that has none: its footprints are exactly 0. (Differential rays that
-/// equal the ray itself would not do: roundings make footprints of 1e-7 of them, and bump maps divide by those.)
-inline constexpr Vec3f kNoDifferential{0, 0, 0};
-
-/// n hits with the rays that made them, grouped by SceneShape::sort_key; render space.
-struct SurfaceHits {
-  int n = 0;
-  Vec3Lanes o, d;
-  float *t = nullptr, *u = nullptr, *v = nullptr;
-  int32_t *shape = nullptr, *instance = nullptr;
-  uint32_t* prim = nullptr;
-  const float* time = nullptr;  ///< In [0,1] over the transform times; null when nothing moves.
-  /// Null when no effect needs differentials; directions of kNoDifferential where a ray has none.
-  Vec3Lanes rx_o, rx_d, ry_o, ry_d;
-
+/// Rays and their hits, grouped by SceneShape::sort_key.
+struct SurfaceHits : Rays, Hits {
   float time_of(int i) const { return compiled_in(Effect::MotionBlur) && time ? time[i] : 0.0f; }
-  bool has_differentials() const { return kKnowsDifferentials && rx_o; }
+  bool has_differentials() const { return kKnowsDifferentials && differentials; }
 };
 
 /// Computes the shading batch of the hits. Derivatives of normals and footprints exist when the hits carry

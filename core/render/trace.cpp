@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
-#include "core/render/round.h"
+#include "core/render/timed.h"
+#include "core/render/tracer.h"
 #include "core/scene/motion.h"
 
 namespace whit {
@@ -122,16 +123,15 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   });
   if (scene.plan.live(Effect::MotionBlur)) sample_times(worker, keys);
 
-  RayList& rays = worker.level(0);
-  rays.clear();
-  rays.reserve(n);
-  rays.n = n;
+  worker.level(0).clear();
+  const Rays rays = worker.level(0).append(n);
   CameraRays out;
   out.n = n;
   out.film_x = c.film_x, out.film_y = c.film_y;
   sample_lens(worker, keys, out);
   out.o = rays.o, out.d = rays.d, out.weight = c.ray_weight;
-  out.rx_o = rays.rx_o, out.rx_d = rays.rx_d, out.ry_o = rays.ry_o, out.ry_d = rays.ry_d;
+  out.rx_o = rays.differentials.rx_o, out.rx_d = rays.differentials.rx_d;
+  out.ry_o = rays.differentials.ry_o, out.ry_d = rays.differentials.ry_d;
   scene.camera().generate(out);
   if (scene.camera_keys.size() == 1 || !compiled_in(Effect::MotionBlur)) {
     place_rays_still(scene.camera_keys.front(), out);
@@ -144,36 +144,63 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
     rays.slot[i] = i;
     rays.stream[i] = 0;
   });
+  if (rays.time) std::copy_n(c.time, n, rays.time);
+  if (rays.pdf) std::fill_n(rays.pdf, n, std::numeric_limits<float>::infinity());
+  if (rays.eta2) std::fill_n(rays.eta2, n, 1.0f);
+  if (rays.via) std::fill_n(rays.via, n, static_cast<int32_t>(Via::Camera));
   worker.statistics.camera_samples += n;
 }
 
-void trace_chunk(Worker& worker) {
-  const Integrator& integrator = worker.scene.integrator();
-  // Depth first over groups of samples: a group ends at a sample's border, so that the order in which a
-  // sample's rays are summed never depends on its neighbours.
+namespace {
+
+/// Where a group of rays from `begin` on ends: at a sample's border, so that the order in which a sample's rays are summed
+/// never depends on its neighbours. Longer than a batch where one sample has more rays than that.
+int end_of_group(const Rays& rays, int begin) {
+  int end = std::min(begin + kBatch, rays.n);
+  while (end < rays.n && end > begin && rays.slot[end] == rays.slot[end - 1]) --end;
+  if (end > begin) return end;
+  end = begin + 1;
+  while (end < rays.n && rays.slot[end] == rays.slot[begin]) ++end;
+  return end;
+}
+
+/// Batch by batch: the integrator says what happens to each.
+void shade_group(Worker& worker, int depth, int begin, int end, Tracer& tracer, Transport& transport) {
+  for (int first = begin; first < end; first += kBatch) {
+    const ArenaScope scope(worker.arena);
+    Rays batch = from_lane(worker.level(depth).rays(), first);
+    batch.n = std::min(kBatch, end - first);
+    worker.scene.integrator().shade(batch, transport);
+    tracer.finish();
+  }
+}
+
+}  // namespace
+
+void trace_chunk(Worker& worker, const Wrap& wrap) {
+  Tracer tracer(worker);
+  std::optional<TimedTransport> timed;
+  if (worker.clock()) timed.emplace(tracer, *worker.clock());
+  const std::unique_ptr<Transport> wrapped = wrap ? wrap(tracer) : nullptr;
+  Transport& transport = wrapped ? *wrapped : timed ? static_cast<Transport&>(*timed) : tracer;
+  // A depth is done before the next begins, so that batches stay full, but for rays that multiply: a full batch of the
+  // next depth goes first.
   std::vector<Worker::Cursor>& stack = worker.cursors;
   stack.assign(1, {0, 0});
   while (!stack.empty()) {
     const int depth = stack.back().depth, begin = stack.back().next;
-    const RayList& rays = worker.level(depth);
-    if (begin == rays.n) {
+    const RayQueue& next = worker.level(depth + 1);
+    const Rays& rays = worker.level(depth).rays();
+    if (next.n() >= kBatch || (begin == rays.n && next.n() > 0)) {
+      stack.push_back({depth + 1, 0});
+    } else if (begin == rays.n) {
+      worker.level(depth).clear();
       stack.pop_back();
-      continue;
+    } else {
+      const int end = end_of_group(rays, begin);
+      stack.back().next = end;
+      shade_group(worker, depth, begin, end, tracer, transport);
     }
-    int end = std::min(begin + kBatch, rays.n);
-    while (end < rays.n && end > begin && rays.slot[end] == rays.slot[end - 1]) --end;
-    if (end == begin) {  // One sample has more rays than a batch holds.
-      end = begin + 1;
-      while (end < rays.n && rays.slot[end] == rays.slot[begin]) ++end;
-    }
-    stack.back().next = end;
-    worker.level(depth + 1).clear();
-    for (int first = begin; first < end; first += kBatch) {
-      Round round(worker, depth, first, std::min(kBatch, end - first));
-      integrator.shade(round);
-      round.deliver();
-    }
-    if (worker.level(depth + 1).n > 0) stack.push_back({depth + 1, 0});
   }
 }
 

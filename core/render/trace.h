@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 
+#include "core/plugin/transport.h"
 #include "core/render/worker.h"
 
 namespace whit {
@@ -23,7 +26,12 @@ inline bool is_usable_sample(const RGB& l) {
   return not_negative & finite;
 }
 
+class Tracer;
+
+/// What watches the transport, around it.
+using Wrap = std::function<std::unique_ptr<Transport>(Tracer&)>;
+
 /// Traces the chunk's rays until none is left; worker.chunk.radiance holds the result.
-void trace_chunk(Worker& worker);
+void trace_chunk(Worker& worker, const Wrap& wrap = {});
 
 }  // namespace whit

@@ -9,7 +9,7 @@ DimensionLayout::DimensionLayout(const Scene& scene) {
   if (scene.plan.live(Effect::DepthOfField)) lens = scene.plan.needed.has(Effect::DepthOfField) ? next : 0;
   if (scene.plan.needed.has(Effect::DepthOfField)) next += 2;
   first_bounce = next;
-  per_bounce = scene.light_dimensions + 2;
+  per_bounce = scene.integrator().dimensions(scene.light_dimensions);
 }
 
 void Worker::start_clock() {
@@ -23,8 +23,17 @@ void Worker::stop_clock() {
   clock_.reset();
 }
 
-RayList& Worker::level(int depth) {
-  while (levels_.size() <= static_cast<size_t>(depth)) levels_.emplace_back(scene.plan.needs_differentials());
+RayQueue& Worker::level(int depth) {
+  const Integrator& integrator = scene.integrator();
+  while (levels_.size() <= static_cast<size_t>(depth)) {
+    const auto next = static_cast<int>(levels_.size());
+    CarriedByRays carried;
+    carried.differentials = scene.plan.needs_differentials() && (next == 0 || integrator.keeps_differentials());
+    carried.time = scene.plan.live(Effect::MotionBlur);
+    carried.densities = integrator.keeps_densities();
+    carried.eta2 = integrator.keeps_densities() && scene.plan.live(Effect::Refraction);
+    levels_.emplace_back(next, carried);
+  }
   return levels_[static_cast<size_t>(depth)];
 }
 

@@ -6,25 +6,21 @@
 #include <vector>
 
 #include "core/batch/arena.h"
-#include "core/lobe/eval.h"
-#include "core/render/ray_list.h"
+#include "core/render/ray_queue.h"
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"
 
 namespace whit {
 
-/// Which sample dimension serves what. Dimensions are drawn only for live effects, and exist only for them, but for the
-/// two of a bounce that are kept for choices between specular lobes.
+/// Which sample dimension serves what. Dimensions exist only for live effects; those of a bounce are the integrator's.
 struct DimensionLayout {
   int time = -1;         ///< One dimension; -1 when nothing moves.
   int lens = -1;         ///< Two dimensions; -1 for a pinhole.
-  int first_bounce = 2;  ///< Of the lights at the first surface.
-  int per_bounce = 0;    ///< The lights' dimensions, then one for each specular lobe choice.
+  int first_bounce = 2;  ///< Of what is drawn at the first surface.
+  int per_bounce = 0;    ///< Integrator::dimensions().
 
   explicit DimensionLayout(const Scene& scene);
-  int of_light(int depth, int offset) const { return first_bounce + depth * per_bounce + offset; }
-  int of_reflection(int depth) const { return first_bounce + (depth + 1) * per_bounce - 2; }
-  int of_refraction(int depth) const { return first_bounce + (depth + 1) * per_bounce - 1; }
+  int of_bounce(int depth, int offset) const { return first_bounce + depth * per_bounce + offset; }
 };
 
 /// Camera samples that are traced together; index = slot. Each ends as one radiance.
@@ -38,17 +34,6 @@ struct SampleChunk {
   RGBLanes radiance;
 };
 
-/// Points of one material, contiguous in a round's batch.
-struct MaterialRun {
-  ShadingBatch points;
-  LobeSet lobes;
-  LobeFrame frame;
-  int first = 0;
-  bool scatters = false, mirrors = false, refracts = false;  ///< Which kinds of lobes it has.
-};
-
-class RoundLog;
-
 /// Everything a worker thread needs and no other may touch.
 class Worker {
  public:
@@ -59,7 +44,6 @@ class Worker {
   Arena arena;
   SampleChunk chunk;
   RenderStatistics statistics;
-  RoundLog* log = nullptr;  ///< Told what happens to the rays; null but for a single sample that is retraced.
 
   /// Runs while the worker renders a tile of a render that is timed; null otherwise.
   StageClock* clock() { return clock_ ? &*clock_ : nullptr; }
@@ -69,16 +53,15 @@ class Worker {
   struct Cursor {
     int depth, next;
   };
-  std::vector<Cursor> cursors;    ///< Of trace_chunk().
-  std::vector<MaterialRun> runs;  ///< Of the current round; kept for its memory.
+  std::vector<Cursor> cursors;  ///< Of trace_chunk().
 
-  /// Rays waiting for the round of a depth.
-  RayList& level(int depth);
+  /// Rays waiting for their depth.
+  RayQueue& level(int depth);
 
  private:
   const bool timed_;
   std::optional<StageClock> clock_;
-  std::deque<RayList> levels_;  ///< A deque: references stay good while it grows.
+  std::deque<RayQueue> levels_;  ///< A deque: references stay good while it grows.
 };
 
 }  // namespace whit

@@ -109,7 +109,9 @@ class Builder {
     if (!options_complete()) return nullptr;
     const auto placed = Clock::now();
     if (!options_.only_check) build_accel();
-    scene_->sort_keys = static_cast<int>(keys_.size());
+    const bool everything = scene_->plan.everything_on;
+    scene_->sort_keys = std::max(static_cast<int>(keys_.size()), everything ? 2 : 0);
+    scene_->has_instances = kKnowsInstances && (!scene_->instances.empty() || everything);
     scene_->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
                              seconds(placed, Clock::now())};
     if (diagnostics_.has_errors() && !options_.keep_going) return nullptr;
@@ -621,7 +623,7 @@ class Builder {
     const AreaLight* light = scene_->bound.emission_of(d);
     if (!light || !scene_->plan.needed.has(Effect::AreaLights)) return {};
     // A curve always faces the ray, so it has no back that could be dark.
-    return Emission{light->radiance(), light->two_sided() || shape.curves != nullptr};
+    return Emission{light->radiance(), light->two_sided() || shape.curves != nullptr, light->sample_count()};
   }
 
   void place_instances() {
@@ -730,10 +732,14 @@ class Builder {
                              "left out: floats cannot hold the square of that beside the rest of the scene");
         continue;
       }
-      if (scene_->plan.direct_light) add_light({.light = light.plugin.get()});
-      if (light.plugin->is_environment()) scene_->environments.push_back(light.plugin.get());
+      const int number = scene_->plan.direct_light ? static_cast<int>(scene_->lights.size()) : -1;
+      if (number >= 0) add_light({.light = light.plugin.get()});
+      if (light.plugin->is_environment()) scene_->environments.push_back({light.plugin.get(), number});
     }
     for (const LitShape& lit : lit_shapes_) add_emitters(lit);
+    const std::optional<LightStrategy> strategy = scene_->integrator().light_strategy();
+    if (strategy && !scene_->lights.empty())
+      scene_->light_choice = make_light_choice(scene_->lights, *strategy, scene_radius_);
   }
 
   void add_light(SceneLight entry) {
@@ -742,6 +748,7 @@ class Builder {
       scene_->light_dimensions += 2;
     }
     entry.reach = entry.light->reach();
+    entry.samples = entry.light->sample_count();
     scene_->lights.push_back(entry);
   }
 

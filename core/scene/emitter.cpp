@@ -77,6 +77,7 @@ class Emitter : public Light {
   }
   float pdf(const LightHit&) const override { return 0; }
   bool is_two_sided() const override { return emission_.two_sided; }
+  int sample_count() const override { return emission_.samples; }
 
  protected:
   const SceneShape shape_;

@@ -11,6 +11,7 @@ namespace whit {
 struct Emission {
   RGB radiance{0.0f};
   bool two_sided = false;
+  int samples = 1;  ///< Light::sample_count().
 };
 
 /// One emitting primitive of a shape as a light. Of a curve, which can be seen but not sampled, `prim` says nothing, nor

@@ -6,6 +6,7 @@
 
 #include "core/plugin/integrator.h"
 #include "core/plugin/registry.h"
+#include "core/plugin/transport.h"
 
 namespace whit {
 namespace {
@@ -15,32 +16,31 @@ struct Whitted final : Integrator {
 
   int max_depth() const override { return std::max(maxdepth, 1); }
 
-  void shade(RayRound& rays) const override {
-    rays.intersect();
-    rays.add_escaped();
-    rays.find_surfaces();
-    rays.add_emitted();
-    for (int light = 0; light < rays.light_count(); ++light) rays.add_direct(light);
-    if (rays.depth() + 1 < maxdepth) rays.spawn_specular();
-  }
+  /// Those of the lights, and a choice between several mirrors or smooth boundaries of a point.
+  int dimensions(int lights) const override { return lights + 2; }
 
-  void check(Diagnostics& diagnostics, SourcePos) override {
-    if (!bounds.given) return;
-    if (bounds.values.size() != 4) {
-      diagnostics.error(bounds.where, "\"pixelbounds\" needs four integers: x0 x1 y0 y1");
-      return;
+  void shade(Rays& rays, Transport& t) const override {
+    const Hits hits = t.intersect(rays);
+    t.add(rays, t.escaped(rays, hits));
+    Points points = t.surfaces(rays, hits);
+    t.shade(points);
+    t.add(points, t.emitted(points));
+    for (const int light : lights(t, points)) {
+      const DirectSamples s = t.sample(points, light);
+      const RGBLanes f = t.scatter(points, s.wi).f;
+      t.add(points, s, t.visible(points, s, times(points.n, f, s.radiance)));
     }
-    pixel_bounds_.assign(bounds.values.begin(), bounds.values.end());
+    if (rays.depth + 1 >= maxdepth) return;
+    const int choice = t.light_dimensions();
+    t.send(points, t.mirrored(points, choice), t.refracted(points, choice + 1));
   }
-
-  IntegerList bounds;
 };
 
 const Register<Whitted> whitted{
     "whitted", "Direct light, perfect mirrors and refraction (Whitted 1980).",
     param(&Whitted::maxdepth, "maxdepth", 5, Unit::None,
           "Rounds of rays: 1 or less shows direct light only, each further one a specular bounce.", {kAny.min, 1e6}),
-    param(&Whitted::bounds, "pixelbounds", Unit::Pixels, "Renders only this part, x0 x1 y0 y1; the rest is black.")};
+    pixelbounds_param()};
 
 }  // namespace
 }  // namespace whit

@@ -174,15 +174,19 @@ void EnvironmentLight::sample(const LightSamples& s) const {
       out.set(i, {lit ? seen.r[i] * weight : 0.0f, lit ? seen.g[i] * weight : 0.0f, lit ? seen.b[i] * weight : 0.0f});
       distance[i] = far[i];
     });
+    if (!s.pdf) continue;
+    float* density = s.pdf + first;
+    for_lanes(n, [=](int i) { density[i] = pdf[i] * jacobian[i] + even[i]; });
   }
 }
 
-void EnvironmentLight::add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out) const {
+void EnvironmentLight::add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out,
+                                   float* pdf) const {
   Block b;
   for (int first = 0; first < n; first += Block::kSize) {
     const int count = std::min(Block::kSize, n - first);
     find_sky(count, o.from(first), d.from(first), b);
-    radiance_->evaluate(count, b.sky, b.radiance, nullptr);
+    radiance_->evaluate(count, b.sky, b.radiance, pdf ? b.pdf : nullptr);
     const RGBLanes sum = out.from(first), seen = b.radiance;
     const float* distance = b.distance;
     for_lanes(count, [=](int i) {
@@ -190,6 +194,9 @@ void EnvironmentLight::add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d
       sum.r[i] += visible ? seen.r[i] : 0.0f, sum.g[i] += visible ? seen.g[i] : 0.0f;
       sum.b[i] += visible ? seen.b[i] : 0.0f;
     });
+    if (!pdf) continue;
+    float* density = pdf + first;
+    for_lanes(count, [=, &b](int i) { density[i] = b.pdf[i] * b.jacobian[i] + b.even[i]; });
   }
 }
 

@@ -45,7 +45,7 @@ class EnvironmentLight : public Light {
   bool is_environment() const override { return true; }
 
   void sample(const LightSamples& s) const override;
-  void add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out) const override;
+  void add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out, float* pdf) const override;
   float pdf(const Vec3f& p, const Vec3f& d) const override;
 
  protected:

@@ -44,7 +44,7 @@ struct Rays {
             t_max.data(),
             time.data()};
   }
-  HitLanes hits() { return {t.data(), shape.data(), prim.data(), instance.data(), u.data(), v.data()}; }
+  Hits hits() { return {t.data(), shape.data(), prim.data(), instance.data(), u.data(), v.data()}; }
   void intersect(const Accel& accel, bool coherent = false) { accel.intersect(lanes(), hits(), coherent); }
   void occlude(const Accel& accel) { accel.occluded(lanes(), blocked.data()); }
 };

@@ -99,7 +99,7 @@ Made<Light> light_of(const Map& map) {
 RGB radiance(const Light& light, Vec3f d) {
   Vec3f o(0.0f);
   RGB out{0.0f};
-  light.add_escaped(1, {&o.x, &o.y, &o.z}, {&d.x, &d.y, &d.z}, {&out.x, &out.y, &out.z});
+  light.add_escaped(1, {&o.x, &o.y, &o.z}, {&d.x, &d.y, &d.z}, {&out.x, &out.y, &out.z}, nullptr);
   return out;
 }
 

@@ -46,7 +46,7 @@ std::vector<Sample> sample(const Light& light, std::vector<Vec3f> p, std::vector
 
 RGB escaped(const Light& light, Vec3f o, Vec3f d) {
   RGB out{0.0f};
-  light.add_escaped(1, {&o.x, &o.y, &o.z}, {&d.x, &d.y, &d.z}, {&out.x, &out.y, &out.z});
+  light.add_escaped(1, {&o.x, &o.y, &o.z}, {&d.x, &d.y, &d.z}, {&out.x, &out.y, &out.z}, nullptr);
   return out;
 }
 

@@ -1,0 +1,196 @@
+// Direct light: samples of lights for surface points, what lobes do with them, and shadow rays.
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/sampling.h"
+#include "core/batch/gather.h"
+#include "core/batch/sort.h"
+#include "core/render/light_reach.h"
+#include "core/render/surface.h"
+#include "core/render/tracer.h"
+
+namespace whit {
+
+int Tracer::next_light(const Points& points, int light) {
+  PointNotes& notes = *points.notes;
+  if (notes.scratch) arena_.release(*notes.scratch);
+  notes.scratch.reset();
+  if (!notes.scatters) return -1;
+  for (const auto n = static_cast<int>(scene_.lights.size()); light < n; ++light) {
+    if (leaves_dark(scene_.lights[static_cast<size_t>(light)], points)) {
+      ++worker_.statistics.lights_skipped;
+      continue;
+    }
+    keys_of(points);
+    notes.scratch = arena_.mark();
+    return light;
+  }
+  return -1;
+}
+
+/// Whether the light adds nothing to any point, as far as bounds can tell.
+bool Tracer::leaves_dark(const SceneLight& light, const Points& points) const {
+  if (!scene_.skip_lights || !skip_dark || light.reach.from == LightReach::From::Anywhere) return false;
+  PointNotes& notes = *points.notes;
+  if (!notes.bounds) notes.bounds = bounds_of(points.at, points.materials);
+  if (!cannot_reach(light.reach, *notes.bounds, points.at)) return false;
+  if (!notes.finite) notes.finite = are_finite(points.at, points.materials);
+  return *notes.finite;
+}
+
+DirectSamples Tracer::allocate_samples(const Points& points, bool densities) {
+  const int n = points.n;
+  DirectSamples s;
+  s.n = n, s.arena = &arena_, s.p = points.at.p;
+  s.wi = arena_.vec3(n), s.distance = arena_.floats(n), s.radiance = arena_.rgb(n);
+  if (densities) s.pdf = arena_.floats(n);
+  return s;
+}
+
+/// How many samples of a light a point is sent, on average.
+float Tracer::expected_samples(int light, const Vec3f& p) const {
+  if (scene_.light_choice) return scene_.light_choice->probability(light, p);
+  return static_cast<float>(scene_.lights[static_cast<size_t>(light)].samples);
+}
+
+DirectSamples Tracer::sample(const Points& points, int light_number, int number, int of, bool densities) {
+  const SceneLight& light = scene_.lights[static_cast<size_t>(light_number)];
+  DirectSamples s = allocate_samples(points, densities && light.dimension >= 0);
+  s.light = light_number, s.is_delta = light.dimension < 0;
+  if (light.dimension >= 0) {
+    const Uniform2 numbers = draw_2d(points, light.dimension);
+    if (number > 0) {
+      for_lanes(points.n, [&](int i) {
+        const Vec2f at = lattice_point({numbers.u[i], numbers.v[i]}, number);
+        numbers.u[i] = at.x, numbers.v[i] = at.y;
+      });
+    }
+    s.u = numbers.u, s.v = numbers.v;
+  }
+  if (light.end.on == RayEnd::On::Plane && light.end.touched) s.q = arena_.vec3(points.n);
+  light.light->sample(s);
+  if (of == 1) return s;
+  const auto count = static_cast<float>(of);
+  const float share = 1 / count;
+  for_lanes(s.n, [&](int i) { s.radiance.set(i, s.radiance[i] * share); });
+  if (s.pdf) for_lanes(s.n, [&](int i) { s.pdf[i] *= count; });
+  return s;
+}
+
+namespace {
+
+/// The samples of some lanes of a batch, with arrays of their own for what lights write.
+LightSamples gathered_samples(const DirectSamples& s, const int32_t* lanes, int n, bool densities, Arena& arena) {
+  LightSamples part;
+  const Vec3Lanes p = arena.vec3(n);
+  float *u = arena.floats(n), *v = arena.floats(n);
+  gather(lanes, n, s.p, p);
+  gather(lanes, n, s.u, u);
+  gather(lanes, n, s.v, v);
+  part.n = n, part.arena = &arena, part.p = p, part.u = u, part.v = v;
+  part.wi = arena.vec3(n), part.distance = arena.floats(n), part.radiance = arena.rgb(n);
+  if (s.q) part.q = arena.vec3(n);
+  if (densities) part.pdf = arena.floats(n);
+  return part;
+}
+
+}  // namespace
+
+DirectSamples Tracer::sample_one(const Points& points, int dimension) {
+  const int n = points.n;
+  if (scene_.lights.empty() || !points.notes->scatters) return {};
+  DirectSamples s = allocate_samples(points, true);
+  const float* const choice = draw_1d(points, dimension);
+  const Uniform2 numbers = draw_2d(points, dimension + 1);
+  s.u = numbers.u, s.v = numbers.v;
+  if (std::any_of(scene_.lights.begin(), scene_.lights.end(), [](const SceneLight& l) { return l.end.touched; }))
+    s.q = arena_.vec3(n);
+  int32_t *light = arena_.alloc<int32_t>(n), *order = arena_.alloc<int32_t>(n);
+  float* const probability = arena_.floats(n);
+  scene_.light_choice->choose(n, s.p, choice, light, probability);
+  s.lights = light;
+  for (int i = 0; i < n; ++i) order[i] = i;
+  if (scene_.lights.size() > 1) sort_lanes(light, n, order, arena_);
+  const ArenaScope scratch(arena_);
+  for (int first = 0, last; first < n; first = last) {
+    const int number = light[order[first]];
+    for (last = first + 1; last < n && light[order[last]] == number;) ++last;
+    const SceneLight& from = scene_.lights[static_cast<size_t>(number)];
+    const int32_t* const lanes = order + first;
+    const int count = last - first;
+    const LightSamples part = gathered_samples(s, lanes, count, from.dimension >= 0, arena_);
+    from.light->sample(part);
+    for (int i = 0; i < count; ++i) {
+      const int to = lanes[i];
+      const float chosen = probability[to];
+      s.wi.set(to, part.wi[i]);
+      s.distance[to] = part.distance[i];
+      s.radiance.set(to, part.radiance[i] * (1 / chosen));
+      // No direction that is sampled otherwise meets a delta light.
+      s.pdf[to] = part.pdf ? chosen * part.pdf[i] : std::numeric_limits<float>::infinity();
+      if (s.q) s.q.set(to, part.q[i]);
+    }
+  }
+  return s;
+}
+
+Scattered Tracer::scatter(const Points& points, const Vec3Lanes& wi, bool densities, LobeKinds kinds) {
+  Scattered out{arena_.rgb(points.n), densities ? arena_.floats(points.n) : nullptr};
+  for (const MaterialRun& run : points.materials) {
+    const RGBLanes f = out.f.from(run.first);
+    float* const pdf = densities ? out.pdf + run.first : nullptr;
+    if (run.scatters) {
+      eval_lobes(run.lobes, run.points, run.frame, wi.from(run.first), f, pdf, kinds);
+    } else {
+      for_lanes(run.points.n, [&](int i) { f.set(i, RGB(0.0f)); });
+      if (pdf) std::fill_n(pdf, run.points.n, 0.0f);
+    }
+  }
+  return out;
+}
+
+RGBLanes Tracer::visible(const Points& points, const DirectSamples& samples, const RGBLanes& light) {
+  int32_t* lanes = arena_.alloc<int32_t>(points.n);
+  int n = 0;
+  for (int i = 0; i < points.n; ++i) {
+    // Not "> 0": a NaN must reach the film's counter.
+    lanes[n] = i;
+    n += !(light.r[i] == 0 && light.g[i] == 0 && light.b[i] == 0);
+  }
+  if (n == 0 || !scene_.plan.live(Effect::Shadows)) return light;
+  const Vec3Lanes o = arena_.vec3(n), d = arena_.vec3(n);
+  float* t_max = arena_.floats(n);
+  const ShadingBatch& at = points.at;
+  for_lanes(n, [&](int i) {
+    const int from = lanes[i];
+    const Vec3f wi = samples.wi[from];
+    d.set(i, wi);
+    o.set(i, offset_origin(at.p[from], at.p_error[from], at.ng[from], wi));
+    t_max[i] = samples.distance[from];
+  });
+  RayLanes rays{n, o, d, t_max, nullptr, nullptr, {}, nullptr};
+  if (samples.light >= 0) rays.end = &scene_.lights[static_cast<size_t>(samples.light)].end;
+  if (samples.lights) {
+    const RayEnd** ends = arena_.alloc<const RayEnd*>(n);
+    for (int i = 0; i < n; ++i) ends[i] = &scene_.lights[static_cast<size_t>(samples.lights[lanes[i]])].end;
+    rays.ends = ends;
+  }
+  if (samples.q) gather(lanes, n, samples.q, rays.q = arena_.vec3(n));
+  if (points.rays.time) {
+    float* const time = arena_.floats(n);
+    gather(lanes, n, points.rays.time, time);
+    rays.time = time;
+  }
+  uint8_t* blocked = arena_.alloc<uint8_t>(n);
+  scene_.accel->occluded(rays, blocked);
+  worker_.statistics.shadow_rays += n;
+  for (int i = 0; i < n; ++i) {
+    const int to = lanes[i];
+    const float open = blocked[i] ? 0.0f : 1.0f;
+    light.r[to] *= open, light.g[to] *= open, light.b[to] *= open;
+  }
+  return light;
+}
+
+}  // namespace whit

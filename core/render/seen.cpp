@@ -1,0 +1,73 @@
+// What rays see of lights: those at infinity, and surfaces that emit.
+
+#include <limits>
+
+#include "core/batch/gather.h"
+#include "core/render/tracer.h"
+
+namespace whit {
+
+Seen Tracer::escaped(const Rays& rays, const Hits& hits, Heuristic heuristic) {
+  Seen seen;
+  if (!scene_.plan.live(Effect::EnvironmentLights)) return seen;
+  int32_t* lanes = arena_.alloc<int32_t>(rays.n);
+  int n = 0;
+  for (int i = 0; i < rays.n; ++i) {
+    if (hits.shape[i] < 0) lanes[n++] = i;
+  }
+  if (n == 0) return seen;
+  const Vec3Lanes o = arena_.vec3(n), d = arena_.vec3(n);
+  gather(lanes, n, rays.o, o);
+  gather(lanes, n, rays.d, d);
+  seen = {n, lanes, arena_.rgb(n), nullptr};
+  for_lanes(n, [&](int i) { seen.radiance.set(i, RGB(0.0f)); });
+  if (!heuristic || !rays.pdf) {
+    for (const SceneEnvironment& e : scene_.environments) e.light->add_escaped(n, o, d, seen.radiance, nullptr);
+    return seen;
+  }
+  float* const pdf = arena_.floats(n);
+  const RGBLanes one = arena_.rgb(n);
+  for (const SceneEnvironment& e : scene_.environments) {
+    for_lanes(n, [&](int i) { one.set(i, RGB(0.0f)); });
+    e.light->add_escaped(n, o, d, one, pdf);
+    for (int i = 0; i < n; ++i) {
+      const float chosen = e.number < 0 ? 0.0f : expected_samples(e.number, o[i]);
+      const float weight = heuristic(rays.pdf[lanes[i]], chosen * pdf[i]);
+      seen.radiance.set(i, seen.radiance[i] + one[i] * weight);
+    }
+  }
+  return seen;
+}
+
+Seen Tracer::emitted(const Points& points, Heuristic heuristic) {
+  Seen seen;
+  if (!scene_.plan.live(Effect::AreaLights)) return seen;
+  const auto shape_of = [&](int i) -> const SceneShape& {
+    return scene_.shapes[static_cast<size_t>(points.hits.shape[i])];
+  };
+  int32_t* lanes = arena_.alloc<int32_t>(points.n);
+  int n = 0;
+  for (int i = 0; i < points.n; ++i) {
+    if (shape_of(i).emitter >= 0) lanes[n++] = i;
+  }
+  if (n == 0) return seen;
+  int32_t* numbers = arena_.alloc<int32_t>(n);
+  seen = {n, lanes, arena_.rgb(n), numbers};
+  const float* const pdf = heuristic ? points.rays.pdf : nullptr;
+  for (int k = 0; k < n; ++k) {
+    const int i = lanes[k];
+    const SceneShape& shape = shape_of(i);
+    const auto prim = shape.mesh && shape.first_light >= 0 ? static_cast<int>(points.hits.prim[i]) : 0;
+    const Light& light = *scene_.emitters[static_cast<size_t>(shape.emitter + prim)];
+    const LightHit hit{points.rays.o[i], points.rays.d[i], points.hits.t[i], points.at.p[i], points.at.ng[i]};
+    numbers[k] = shape.first_light < 0 ? DirectSamples::kNone : shape.first_light + prim;
+    RGB radiance = light.emitted(hit);
+    if (pdf && numbers[k] >= 0 && pdf[i] < std::numeric_limits<float>::infinity() && !is_black(radiance)) {
+      radiance = radiance * heuristic(pdf[i], expected_samples(numbers[k], hit.o) * light.pdf(hit));
+    }
+    seen.radiance.set(k, radiance);
+  }
+  return seen;
+}
+
+}  // namespace whit
