@@ -257,20 +257,18 @@ class Binder {
     scene_.sampler.replaced = true;
   }
 
-  /// An integrator that nobody has registered is rendered as Whitted's, which is said once; maxdepth is kept.
+  /// An integrator that nobody has registered is rendered by the nearest there is, which is said once.
   void bind_integrator() {
     const Entity& entity = description_.integrator;
     if (entity.plugin.empty() || find_plugin("integrator", entity.plugin)) {
       scene_.integrator = bind_option<Integrator>(entity, "integrator", "whitted", {});
       return;
     }
-    static const std::vector<std::string> pbrt = {"directlighting",  "path", "volpath", "bdpt", "mlt", "sppm",
-                                                  "ambientocclusion"};
+    static const std::vector<std::string> pbrt = {"volpath", "bdpt", "mlt", "sppm"};
     const bool known = std::find(pbrt.begin(), pbrt.end(), entity.plugin) != pbrt.end();
-    std::string remedy = "the picture is made with whitted";
-    if (known) {
-      remedy += ": direct light, mirrors and refraction";
-    } else {
+    const std::string stand_in = known ? "path" : "whitted";
+    std::string remedy = "the picture is made with " + stand_in;
+    if (!known) {
       std::vector<std::string> names = plugin_names("integrator");
       names.insert(names.end(), pbrt.begin(), pbrt.end());
       const std::string hint = did_you_mean(entity.plugin, names);
@@ -278,8 +276,10 @@ class Binder {
     }
     report({Severity::Warning, ErrorClass::Scene, entity.plugin_at,
             fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"), remedy});
-    scene_.integrator = bind_as<Integrator>(entity, *find_plugin("integrator", "whitted"),
-                                            keep_only(entity.params, {"maxdepth", "pixelbounds"}));
+    std::vector<std::string> shared{"maxdepth", "pixelbounds"};
+    if (known) shared.insert(shared.end(), {"rrthreshold", "lightsamplestrategy"});
+    scene_.integrator =
+        bind_as<Integrator>(entity, *find_plugin("integrator", stand_in), keep_only(entity.params, shared));
     scene_.integrator.replaced = true;
   }
 

@@ -8,7 +8,11 @@ namespace {
 class Planner {
  public:
   Planner(const BoundScene& scene, const PlanOptions& options) : scene_(scene), description_(*scene.description) {
-    plan_.off = options.off;
+    plan_.off = plan_.off_by_hand = options.off;
+    if (!scene.integrator.plugin) return;
+    const EffectSet simulated = scene.integrator.plugin->simulates();
+    plan_.off |= EffectSet::all() - simulated;
+    shades_ = !(simulated & EffectSet{Effect::Diffuse, Effect::Glossy, Effect::Reflection, Effect::Refraction}).empty();
     plan_.everything_on = options.everything_on;
   }
 
@@ -23,6 +27,7 @@ class Planner {
     place_instances();
     for (size_t i = 0; i < scene_.shapes.size(); ++i) visit_shape(i);
     scatters_ = wants(Effect::Diffuse) || wants(Effect::Glossy);
+    visit_integrator();
     for (size_t i = 0; i < scene_.lights.size(); ++i) visit_light(i);
     visit_emitters();
     visit_camera();
@@ -30,7 +35,8 @@ class Planner {
     note_ignored();
     plan_.needed = plan_.called_for - plan_.off - forgone_;
     for_effects(plan_.called_for, [&](Effect e) {
-      if (plan_.off.has(e)) use(e).why_off = "switched off";
+      if (plan_.off.has(e)) use(e).why_off = "not of this integrator";
+      if (plan_.off_by_hand.has(e)) use(e).why_off = "switched off";
       if (!compiled_in(e)) use(e).why_off = "not in this build";
     });
     return std::move(plan_);
@@ -143,6 +149,7 @@ class Planner {
   void visit_material(int index, SourcePos shape) {
     const auto m = static_cast<size_t>(index);
     if (plan_.material_live[m]) return;
+    if (!shades_) return;
     plan_.material_live[m] = 1;
     const auto& material = scene_.materials[m];
     if (!material.plugin) return;
@@ -182,6 +189,13 @@ class Planner {
     call_for({Effect::Shadows}, where, what);
   }
 
+  void visit_integrator() {
+    const auto& integrator = scene_.integrator;
+    if (!integrator.plugin) return;
+    call_for(integrator.plugin->effects(), integrator.where, description_.integrator.plugin);
+    if (!scatters_) forgo(Effect::Indirect, "no surface scatters light");
+  }
+
   void visit_camera() {
     if (!scene_.camera.plugin) return;
     call_for(scene_.camera.plugin->effects(), scene_.camera.where, "camera");
@@ -215,6 +229,7 @@ class Planner {
   std::vector<int> named_light_;  ///< Whether an area light has called for the effect.
   std::vector<uint8_t> worn_;     ///< Materials that a shape wears, not only a mix.
   bool scatters_ = false;
+  bool shades_ = true;  ///< The integrator asks for lobes.
 };
 
 }  // namespace

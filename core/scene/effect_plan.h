@@ -39,7 +39,8 @@ struct PlanOptions {
 struct EffectPlan {
   EffectSet called_for;        ///< By what is visible.
   EffectSet needed;            ///< The picture depends on these alone: called for, and not switched off.
-  EffectSet off;               ///< PlanOptions::off.
+  EffectSet off;               ///< PlanOptions::off, and what the integrator does not simulate.
+  EffectSet off_by_hand;       ///< PlanOptions::off.
   bool everything_on = false;  ///< PlanOptions::everything_on.
   std::array<EffectUse, kEffects> uses;
 

@@ -62,7 +62,7 @@ void read_live(BoundScene& scene, EffectPlan& plan, Diagnostics& diagnostics) {
     const std::vector<uint8_t> materials = read_all(scene.materials, plan.material_live, materials_done, diagnostics);
     if (!any(textures) && !any(materials)) return;
     drop_users(scene, textures);
-    plan = plan_effects(scene, {plan.off, plan.everything_on});
+    plan = plan_effects(scene, {plan.off_by_hand, plan.everything_on});
   }
 }
 

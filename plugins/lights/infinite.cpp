@@ -13,8 +13,9 @@ class InfiniteLight final : public EnvironmentLight {
  public:
   RGB L{1.0f}, scale{1.0f};
   FileName map;
-  int samples = 1, nsamples = 1;  ///< pbrt's; the integrator takes one sample per light and hit.
+  int samples = 1, nsamples = 1;  ///< pbrt knows both names; "samples" goes first.
 
+  int sample_count() const override { return samples != 1 ? samples : nsamples; }
   bool is_black() const override { return whit::is_black(L * scale); }
 
   bool prepare(const PrepareContext& ctx) override {
@@ -38,8 +39,9 @@ const Register<InfiniteLight> infinite{
     param(&InfiniteLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
     param(&InfiniteLight::map, "mapname", Unit::None,
           "Lat-long map; +z of light space is at its top. Without one, the same in all directions."),
-    param(&InfiniteLight::samples, "samples", 1, Unit::None, "Accepted for pbrt's sake; has no effect."),
-    param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "Accepted for pbrt's sake; has no effect.")};
+    param(&InfiniteLight::samples, "samples", 1, Unit::None,
+          "How often directlighting samples it at each point; of no effect on other integrators.", {1, 1e6}),
+    param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "The same by its older name.", {1, 1e6})};
 
 }  // namespace
 }  // namespace whit
