@@ -29,7 +29,7 @@ constexpr EffectInfo kInfos[] = {
      "displacement evaluated three times; differential rays, footprints", "", 48, 64},
     {"alpha", "surfaces cut out by a texture", "whole surfaces", "the ray tracer asks at each hit", "", 0, 0},
     {"motion-blur", "things that move while the shutter is open", "all as it is when the shutter opens",
-     "times sampled, transforms interpolated", "1 per sample", 0, 4},
+     "times sampled, transforms interpolated", "1 per sample", 4, 4},
     {"depth-of-field", "a lens with an area", "rays through the middle of the lens", "positions on the lens sampled",
      "2 per sample", 0, 0},
     {"instancing", "objects that are placed", "no placed objects", "points taken to render space and back", "", 0, 4},

@@ -15,7 +15,9 @@ namespace whit {
 namespace detail {
 
 template <class T>
-concept HasFields = requires { T::fields(); };
+concept HasFields = requires {
+  T::fields();
+};
 
 template <class T>
 inline constexpr bool kIsArray = std::is_pointer_v<T>;
@@ -76,6 +78,15 @@ T from_lane(T s, int first) {
   return s;
 }
 
+/// What allocate_like() takes for a structure with all its arrays. They point to nothing of use.
+template <detail::HasFields T>
+T with_all_fields() {
+  static float there;
+  T s;
+  for_fields(s, [](auto*& p) { p = reinterpret_cast<std::remove_reference_t<decltype(p)>>(&there); });
+  return s;
+}
+
 /// Arrays of n lanes for what `like` has.
 template <detail::HasFields T>
 T allocate_like(const T& like, int n, Arena& arena) {
@@ -103,6 +114,14 @@ T gathered(const T& from, const int32_t* lanes, int n, Arena& arena) {
     if (values) for_lanes(n, [&](int i) { to[i] = values[lanes[i]]; });
   });
   return out;
+}
+
+/// Bytes that a lane takes in the arrays that are there.
+template <detail::HasFields T>
+int lane_bytes(T s) {
+  size_t bytes = 0;
+  for_fields(s, [&bytes](const auto* p) { bytes += p ? sizeof *p : 0; });
+  return static_cast<int>(bytes);
 }
 
 }  // namespace whit

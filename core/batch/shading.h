@@ -1,6 +1,7 @@
 // Surface points of a batch: what materials and textures are evaluated at.
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "core/base/effect.h"
@@ -33,6 +34,12 @@ struct ShadingBatch {
   float *dudx = nullptr, *dvdx = nullptr, *dudy = nullptr, *dvdy = nullptr;
   Vec3Lanes dpdx, dpdy;
   uint8_t* flips = nullptr;  ///< SceneShape::flips, 1 where normals flip.
+
+  static constexpr auto fields() {
+    using S = ShadingBatch;
+    return std::tuple(&S::p, &S::p_error, &S::wo, &S::ng, &S::ns, &S::dpdu, &S::dpdv, &S::dndu, &S::dndv, &S::u, &S::v,
+                      &S::dudx, &S::dvdx, &S::dudy, &S::dvdy, &S::dpdx, &S::dpdy, &S::flips);
+  }
 
   bool has_footprint() const { return kKnowsDifferentials && dudx != nullptr; }
 

@@ -2,8 +2,8 @@
 // normal.
 #pragma once
 
-#include "core/base/sampling.h"
 #include "core/base/fastmath.h"
+#include "core/base/sampling.h"
 #include "core/lobe/table.h"
 
 namespace whit {

@@ -44,7 +44,7 @@ struct Seen {
 /// A sample of light for every point: of one light, or of one that was chosen for each point.
 struct DirectSamples : LightSamples {
   static constexpr int kNone = -1;
-  int light = kNone;                ///< Number of the light; kNone when it is another for each point, or no light at all.
+  int light = kNone;  ///< Number of the light; kNone when it is another for each point, or no light at all.
   const int32_t* lights = nullptr;  ///< Numbers by point, or null.
   bool is_delta = false;            ///< No direction that is sampled otherwise can meet it.
 };
@@ -114,8 +114,7 @@ class Transport {
   virtual int next_light(const Points& points, int light) = 0;
   /// A sample of one light, the number-th of several that are wanted for each point: radiance is divided by all of them,
   /// and multiplied into the density.
-  virtual DirectSamples sample(const Points& points, int light, int number = 0, int of = 1,
-                               bool densities = false) = 0;
+  virtual DirectSamples sample(const Points& points, int light, int number = 0, int of = 1, bool densities = false) = 0;
   /// How many samples of a light the scene wants.
   virtual int samples_of(int light) const = 0;
   /// A sample of one light for each point, chosen by the number of `dimension`, sampled by those of the two after it. The

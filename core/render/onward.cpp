@@ -85,8 +85,7 @@ SenderPair find_senders(const Points& points, const Onward& a, const Onward& b, 
 void fill_via(const Points& points, const Onward& onward, const Senders& senders, const Rays& out) {
   const bool first = points.rays.depth == 0;
   const auto now = via_of(onward.kind);
-  for_lanes(senders.n,
-            [&](int k) { out.via[senders.to[k]] = first ? now : points.rays.via[senders.point[k]]; });
+  for_lanes(senders.n, [&](int k) { out.via[senders.to[k]] = first ? now : points.rays.via[senders.point[k]]; });
 }
 
 /// Hashed into a ray's branch, so that the branches of a sample draw different numbers. A path has no branches.
@@ -115,9 +114,8 @@ void fill_rays(const Points& points, const Onward& onward, const Senders& sender
   if (out.time) for_lanes(senders.n, [&](int k) { out.time[to[k]] = in.time[point[k]]; });
   if (out.pdf) for_lanes(senders.n, [&](int k) { out.pdf[to[k]] = onward.pdf ? onward.pdf[point[k]] : kSpecular; });
   if (out.eta2) {
-    for_lanes(senders.n, [&](int k) {
-      out.eta2[to[k]] = in.eta2[point[k]] * (onward.eta2 ? onward.eta2[point[k]] : 1.0f);
-    });
+    for_lanes(senders.n,
+              [&](int k) { out.eta2[to[k]] = in.eta2[point[k]] * (onward.eta2 ? onward.eta2[point[k]] : 1.0f); });
   }
   if (out.via) fill_via(points, onward, senders, out);
   if (!out.differentials) return;
@@ -194,9 +192,9 @@ void Tracer::roulette(const Points& points, const Onward& onward, int dimension,
   const RGBLanes &weight = onward.weight, &throughput = points.rays.throughput;
   for_lanes(points.n, [&](int i) {
     const float eta2 = points.rays.eta2 ? points.rays.eta2[i] * onward.eta2[i] : 1.0f;
-    const float carried = max_of(max_of(throughput.r[i] * weight.r[i], throughput.g[i] * weight.g[i]),
-                                 throughput.b[i] * weight.b[i]) *
-                          eta2;
+    const float carried =
+        max_of(max_of(throughput.r[i] * weight.r[i], throughput.g[i] * weight.g[i]), throughput.b[i] * weight.b[i]) *
+        eta2;
     const float q = max_of(0.05f, 1 - carried);
     const float survives = u[i] < q ? 0.0f : 1 / (1 - q);
     const float scale = carried < threshold ? survives : 1.0f;

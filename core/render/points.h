@@ -27,9 +27,9 @@ struct PointBounds {
 
 /// Kept with a batch of points once it has been asked for.
 struct PointNotes {
-  int rays = 0;                        ///< In the batch in which the points' rays were.
-  bool scatters = false;               ///< Whether some point has a lobe that is not specular.
-  SampleKeys keys;                     ///< Of the points; filled by the first draw.
+  int rays = 0;           ///< In the batch in which the points' rays were.
+  bool scatters = false;  ///< Whether some point has a lobe that is not specular.
+  SampleKeys keys;        ///< Of the points; filled by the first draw.
   int32_t *px = nullptr, *py = nullptr;
   uint32_t* index = nullptr;
   std::optional<PointBounds> bounds;   ///< Once a light has been compared with them.

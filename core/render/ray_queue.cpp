@@ -5,11 +5,7 @@
 namespace whit {
 
 RayQueue::RayQueue(int depth, const CarriedByRays& carried) {
-  rays_.depth = depth;
-  // allocate_like() and all that follows ask only whether an array is there.
-  static float there;
-  Rays like;
-  for_fields(like, [](auto*& p) { p = reinterpret_cast<std::remove_reference_t<decltype(p)>>(&there); });
+  Rays like = with_all_fields<Rays>();
   if (!carried.differentials) like.differentials = {};
   if (!carried.time) like.time = nullptr;
   if (!carried.densities) like.pdf = nullptr;

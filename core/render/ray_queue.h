@@ -10,7 +10,11 @@ namespace whit {
 
 /// Which arrays rays carry beside those that all have.
 struct CarriedByRays {
-  bool differentials = false, time = false, densities = false, eta2 = false, via = false;
+  bool differentials = false;
+  bool time = false;
+  bool densities = false;  ///< Rays::pdf.
+  bool eta2 = false;
+  bool via = false;
 };
 
 /// Rays of one depth, ordered by slot (the sample they belong to).

@@ -26,8 +26,7 @@ struct RenderStatistics {
   uint32_t first_invalid_sample = 0;
 
   int64_t rays() const {
-    return camera_rays + reflection_rays + refraction_rays + indirect_rays + passing_rays + shadow_rays +
-           probe_rays;
+    return camera_rays + reflection_rays + refraction_rays + indirect_rays + passing_rays + shadow_rays + probe_rays;
   }
   void count(Onward::Kind kind, int64_t rays) {
     (kind == Onward::Kind::Mirrored    ? reflection_rays

@@ -1,6 +1,7 @@
 #include "core/render/surface.h"
 
 #include "core/base/fastmath.h"
+#include "core/batch/fields.h"
 #include "core/scene/bake.h"
 #include "core/scene/motion.h"
 
@@ -513,18 +514,13 @@ void compute_footprints(const SurfaceHits& h, const ShadingBatch& s, const Geome
 }
 
 ShadingBatch allocate(const SurfaceHits& h, bool bumps, Arena& arena) {
-  ShadingBatch s;
+  ShadingBatch s = with_all_fields<ShadingBatch>();
+  const bool footprints = h.has_differentials();
+  if (!bumps && !footprints) s.dndu = s.dndv = {};
+  if (!footprints) s.dudx = s.dvdx = s.dudy = s.dvdy = nullptr, s.dpdx = s.dpdy = {};
+  s = allocate_like(s, h.n, arena);
   s.n = h.n;
   s.arena = &arena;
-  s.p = arena.vec3(h.n), s.p_error = arena.vec3(h.n), s.wo = arena.vec3(h.n);
-  s.ng = arena.vec3(h.n), s.ns = arena.vec3(h.n), s.dpdu = arena.vec3(h.n), s.dpdv = arena.vec3(h.n);
-  s.u = arena.floats(h.n), s.v = arena.floats(h.n);
-  s.flips = arena.alloc<uint8_t>(h.n);
-  if (bumps || h.has_differentials()) s.dndu = arena.vec3(h.n), s.dndv = arena.vec3(h.n);
-  if (h.has_differentials()) {
-    s.dudx = arena.floats(h.n), s.dvdx = arena.floats(h.n), s.dudy = arena.floats(h.n), s.dvdy = arena.floats(h.n);
-    s.dpdx = arena.vec3(h.n), s.dpdy = arena.vec3(h.n);
-  }
   return s;
 }
 

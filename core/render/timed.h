@@ -18,7 +18,9 @@ class TimedTransport final : public TransportWrapper {
  public:
   TimedTransport(Transport& inner, StageClock& clock) : TransportWrapper(inner), clock_(clock) {}
 
-  Hits intersect(Rays& rays) override { return in(Stage::Intersect, [&] { return inner_.intersect(rays); }); }
+  Hits intersect(Rays& rays) override {
+    return in(Stage::Intersect, [&] { return inner_.intersect(rays); });
+  }
   Seen escaped(const Rays& rays, const Hits& hits, Heuristic h) override {
     return in(Stage::LightSampling, [&] { return inner_.escaped(rays, hits, h); });
   }

@@ -16,8 +16,8 @@ namespace whit {
 namespace {
 
 Hits allocate_hits(int n, Arena& arena) {
-  return {arena.floats(n), arena.alloc<int32_t>(n), arena.alloc<uint32_t>(n),
-          arena.alloc<int32_t>(n), arena.floats(n), arena.floats(n)};
+  return {arena.floats(n),         arena.alloc<int32_t>(n), arena.alloc<uint32_t>(n),
+          arena.alloc<int32_t>(n), arena.floats(n),         arena.floats(n)};
 }
 
 }  // namespace
@@ -73,9 +73,7 @@ Points Tracer::surfaces(const Rays& rays, const Hits& hits, Which which) {
 }
 
 void Tracer::shade(Points& points) {
-  const auto material_of = [&](int i) {
-    return scene_.shapes[static_cast<size_t>(points.hits.shape[i])].material;
-  };
+  const auto material_of = [&](int i) { return scene_.shapes[static_cast<size_t>(points.hits.shape[i])].material; };
   int count = 0;
   for (int i = 0; i < points.n; ++i) count += i == 0 || material_of(i) != material_of(i - 1);
   MaterialRun* const runs = arena_.alloc<MaterialRun>(count);
@@ -83,7 +81,8 @@ void Tracer::shade(Points& points) {
   for (int first = 0, last; first < points.n; first = last) {
     last = first + 1;
     while (last < points.n && material_of(last) == material_of(first)) ++last;
-    MaterialRun& run = *new (runs + number++) MaterialRun{points.at.range(first, last - first), LobeSet(arena_), {}, first};
+    MaterialRun& run =
+        *new (runs + number++) MaterialRun{points.at.range(first, last - first), LobeSet(arena_), {}, first};
     const Material& material = *scene_.materials[static_cast<size_t>(material_of(first))];
     if (scene_.plan.live(Effect::Bump)) apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
     material.lobes(run.points, run.lobes);

@@ -99,8 +99,8 @@ RGBLanes TransportLog::visible(const Points& points, const DirectSamples& sample
     const int number = samples.lights ? samples.lights[i] : samples.light;
     const std::string what = number >= 0 ? fmt::format("light {}", number) : "no light";
     const RGB radiance = samples.radiance ? samples.radiance[i] : RGB(1.0f);
-    line(fmt::format("  {} {}: along {}, distance {:.9g}, radiance over pdf {}, reflected {}", point_name(points, i), what,
-                     text_of(samples.wi[i]), static_cast<double>(samples.distance[i]) / scene_.space.scale,
+    line(fmt::format("  {} {}: along {}, distance {:.9g}, radiance over pdf {}, reflected {}", point_name(points, i),
+                     what, text_of(samples.wi[i]), static_cast<double>(samples.distance[i]) / scene_.space.scale,
                      text_of(radiance), text_of(sent[static_cast<size_t>(i)])));
     if (is_black(sent[static_cast<size_t>(i)])) continue;
     const bool blocked = is_black(seen[i]);

@@ -14,6 +14,7 @@ class UniformChoice final : public LightChoice {
     }
   }
   float probability(int, const Vec3f&) const override { return 1 / static_cast<float>(count_); }
+
  private:
   int count_;
 };

@@ -79,7 +79,7 @@ struct SceneLight {
   int shape = -1;  ///< Of an emitting primitive.
   uint32_t prim = 0;
   int dimension = -1;  ///< Offset of its two sample dimensions within a bounce; -1 for a delta light.
-  int samples = 1;  ///< For each point, where the integrator samples every light as often as the scene wants.
+  int samples = 1;     ///< For each point, where the integrator samples every light as often as the scene wants.
   LightReach reach{};
   RayEnd end{};  ///< Of its shadow rays.
 };
@@ -123,11 +123,11 @@ struct Scene {
   std::vector<SceneLight> lights;
   bool skip_lights = true;  ///< Leave lights out that cannot reach any point of a batch. The picture is the same.
   std::vector<SceneEnvironment> environments;  ///< Lights that escaped rays see.
-  std::vector<Mat4d> camera_keys;          ///< Camera to render space at evenly spaced times.
-  double time_start = 0, time_end = 1;     ///< Times of the first and last key.
-  int light_dimensions = 0;                ///< Sample dimensions that the lights of one bounce use.
+  std::vector<Mat4d> camera_keys;              ///< Camera to render space at evenly spaced times.
+  double time_start = 0, time_end = 1;         ///< Times of the first and last key.
+  int light_dimensions = 0;                    ///< Sample dimensions that the lights of one bounce use.
   int samples_per_pixel = 1;
-  int sort_keys = 0;            ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
+  int sort_keys = 0;           ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
   bool has_instances = false;  ///< Points are taken to render space.
   std::unique_ptr<LightChoice> light_choice;  ///< Null where the integrator samples every light.
   std::unique_ptr<Accel> accel;

@@ -62,7 +62,8 @@ struct Path final : Integrator {
 };
 
 const Register<Path> path{
-    "path", "Light by way of all surfaces: path tracing with multiple importance sampling.",
+    "path",
+    "Light by way of all surfaces: path tracing with multiple importance sampling.",
     param(&Path::maxdepth, "maxdepth", 5, Unit::None,
           "Bounces at most: 0 shows what emits, 1 adds direct light, 2 light by way of one other surface.",
           {kAny.min, 1e6}),

@@ -134,7 +134,7 @@ std::vector<float> distances(const Scene& scene, int n, int batch, bool coherent
   std::vector<uint32_t> prim(n);
   for (int first = 0; first < n; first += batch) {
     const Hits hits{t.data() + first,        shape.data() + first, prim.data() + first,
-                        instance.data() + first, u.data() + first,     v.data() + first};
+                    instance.data() + first, u.data() + first,     v.data() + first};
     scene.accel->intersect(
         {std::min(batch, n - first), o.vec3().from(first), d.vec3().from(first), nullptr, nullptr, nullptr, {}}, hits,
         coherent);

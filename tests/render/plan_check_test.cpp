@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <map>
 
-#include "core/render/ray_list.h"
+#include "core/render/ray_queue.h"
 #include "tests/hard/render_text.h"
 
 namespace whit {
@@ -75,12 +75,14 @@ TEST(PlanCheck, WhatIsNotCalledForIsNotDoneAndWouldChangeNoBit) {
 }
 
 TEST(PlanCheck, ExplainTellsTheBytesOfARay) {
-  for (const Effect e : {Effect::Reflection, Effect::Refraction}) {
-    EXPECT_EQ(effect_info(e).ray_bytes, 4 * RayList::kFields);
-  }
+  const auto bytes = [](const CarriedByRays& carried) { return lane_bytes(RayQueue(1, carried).rays()); };
+  const int plain = bytes({});
+  for (const Effect e : {Effect::Reflection, Effect::Refraction}) EXPECT_EQ(effect_info(e).ray_bytes, plain);
   for (const Effect e : {Effect::TextureFiltering, Effect::Bump}) {
-    EXPECT_EQ(effect_info(e).ray_bytes, 4 * RayList::kDifferentialFields);
+    EXPECT_EQ(effect_info(e).ray_bytes, bytes({.differentials = true}) - plain);
   }
+  EXPECT_EQ(effect_info(Effect::MotionBlur).ray_bytes, bytes({.time = true}) - plain);
+  EXPECT_EQ(effect_info(Effect::Indirect).ray_bytes, bytes({.densities = true, .eta2 = true}));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ struct Hit {
     h.shape = arena.alloc<int32_t>(1), h.instance = arena.alloc<int32_t>(1), h.prim = arena.alloc<uint32_t>(1);
     h.o.set(0, Vec3f(transform_point(m, from)));
     h.d.set(0, Vec3f((to - from).normalized()));
-    h.rx_o = h.ry_o = h.o, h.rx_d = h.ry_d = h.d;
+    h.differentials = {h.o, h.d, h.o, h.d};
     scene.accel->intersect({1, h.o, h.d, nullptr, nullptr}, {h.t, h.shape, h.prim, h.instance, h.u, h.v}, false);
     if (h.shape[0] < 0) throw std::runtime_error("a miss");
     s = compute_surfaces(scene, h, arena);

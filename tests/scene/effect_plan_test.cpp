@@ -343,8 +343,9 @@ TEST(EffectPlan, CausesNameTheStatement) {
 
 /// An integrator that somebody else has made.
 struct NoLight : Integrator {
-  void shade(RayRound&) const override {}
+  void shade(Rays&, Transport&) const override {}
   int max_depth() const override { return 1; }
+  int dimensions(int) const override { return 0; }
 };
 const Register<NoLight> no_light{"nolight", "For a test."};
 
