@@ -18,8 +18,9 @@ struct SourcePos {
 
 enum class Severity : uint8_t { Warning, Error };
 
-/// Which exit code an error leads to: the scene is wrong (3), or a file could not be read or written (4).
-enum class ErrorClass : uint8_t { Scene, File };
+/// Which exit code an error leads to: the scene is wrong (3), a file could not be read or written (4), or what was asked
+/// for, apart from the scene, cannot be had (2).
+enum class ErrorClass : uint8_t { Scene, File, Usage };
 
 struct Diagnostic {
   Severity severity = Severity::Error;

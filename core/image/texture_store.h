@@ -84,6 +84,8 @@ class ImageTexture {
 /// Owns the textures of a scene. Thread-safe. Handles live as long as the store.
 class TextureStore {
  public:
+  static constexpr size_t kDefaultMemory = size_t{1} << 30;
+
   TextureStore();
   ~TextureStore();
   TextureStore(const TextureStore&) = delete;
@@ -93,7 +95,7 @@ class TextureStore {
   /// `where` is the place of the file's name, for errors().
   const ImageTexture* add(const TextureSpec& spec, SourcePos where = {});
 
-  /// The most bytes (default 1 GiB) that texels and what is being decoded may take. Before there would be more, levels
+  /// The most bytes (kDefaultMemory unless set) that texels and what is being decoded may take. Before there would be more, levels
   /// finer than anyone has looked up are dropped, then whole textures, the least recently used first, and decoded again
   /// when needed. One in use stays until its lookup ends; the latest decoded stays in any case.
   void set_memory_limit(size_t bytes);
@@ -129,7 +131,7 @@ class TextureStore {
   std::map<SourceKey, std::unique_ptr<ImageTexture::Source>> sources_;
   std::map<TextureKey, std::unique_ptr<ImageTexture>> textures_;
   std::shared_ptr<Memory> memory_;
-  std::atomic<size_t> limit_{size_t{1} << 30};
+  std::atomic<size_t> limit_{kDefaultMemory};
   std::atomic<bool> failed_{false};
   std::atomic<int64_t> decodes_{0}, trims_{0}, evictions_{0};
   std::atomic<int64_t> clock_{0};  // counts changes of the texture in use

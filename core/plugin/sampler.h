@@ -21,7 +21,8 @@ class Sampler : public Plugin {
 
   /// Samples per pixel, after the rounding the sampler needs (stratified, powers of two).
   virtual int samples_per_pixel() const = 0;
-  /// Overrides the count (--spp); the sampler rounds as it must. Returns the count it will use.
+  /// Overrides the count (--spp); the sampler rounds as it must, in the same way whatever was set before. Returns the
+  /// count it will use. To be prepared anew.
   virtual int set_samples_per_pixel(int n) = 0;
   /// True when samples lie at the same place in every pixel, so that rays can be aimed exactly at vertices of a mesh.
   virtual bool is_regular() const { return false; }

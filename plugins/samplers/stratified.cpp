@@ -30,10 +30,14 @@ class Stratified final : public Sampler {
   int samples_per_pixel() const override { return xsamples * ysamples; }
   bool is_regular() const override { return !jitter; }
 
-  /// The grid nearest to square that holds n samples.
+  /// The grid nearest to square that holds n samples; the declared one where that holds n.
   int set_samples_per_pixel(int n) override {
     n = std::clamp(n, 1, kMaxSamples);
-    if (n == samples_per_pixel()) return n;
+    if (declared_.x == 0) declared_ = {xsamples, ysamples};
+    if (n == declared_.x * declared_.y) {
+      xsamples = declared_.x, ysamples = declared_.y;
+      return n;
+    }
     xsamples = static_cast<int>(std::sqrt(static_cast<double>(n)));
     ysamples = (n + xsamples - 1) / xsamples;
     return samples_per_pixel();
@@ -111,6 +115,8 @@ class Stratified final : public Sampler {
     permute_lanes(
         n, count, [=](int i) { return mix32(key[i] ^ salt); }, index);
   }
+
+  Vec2i declared_{0, 0};  ///< The scene's own grid, once a number of samples has been set.
 };
 
 constexpr Range kSide{1, 1 << 16};

@@ -24,13 +24,10 @@ Outcome picture_with(const std::string& far) {
       "\nLightSource \"point\" \"point from\" [1 2 5] \"rgb I\" [25 25 25]\nShape \"sphere\"\n"
       "Shape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [-2 -1.1 -2 2 -1.1 -2 2 -1.1 2 -2 -1.1 2]\n"
       "WorldEnd\n");
-  Diagnostics said;
-  TextureStore textures;
-  const std::unique_ptr<Scene> scene =
-      build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
+  const BuiltWorld built = build_world(std::move(planned.world));
   Outcome out;
-  for (const Diagnostic& d : said.all()) out.said += planned.sources.render_diagnostic(d, false);
-  if (scene) out.rgb = render(*scene, {}).picture.rgb;
+  for (const Diagnostic& d : built.said.all()) out.said += planned.sources.render_diagnostic(d, false);
+  if (built.scene) out.rgb = render_world(built).result.picture.rgb;
   return out;
 }
 

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/render/render.h"
 #include "tests/scene/scene_text.h"
 
 namespace whit {
@@ -26,9 +25,7 @@ RenderResult through_sheets(int n, double first, double step) {
       "\"rgb L\" [1 2 3] \"bool twosided\" \"true\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2]\n"
       "\"point P\" [-90 -90 20 90 -90 20 0 90 20] AttributeEnd\n" +
       sheets + "WorldEnd\n");
-  Diagnostics said;
-  TextureStore textures;
-  return render(*build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said), {});
+  return render_world(build_world(std::move(planned.world))).result;
 }
 
 void expect_seen(const RenderResult& result) {

@@ -189,10 +189,8 @@ TEST(Hard, InstancesFlatterThanFloats) {
     for (const char* axes : {"{0:g} 1 1", "{0:g} {0:g} {0:g}"}) {
       Planned planned(picture_text("matte", "Shape \"sphere\" ObjectBegin \"o\" Shape \"sphere\" ObjectEnd Scale " +
                                                 fmt::format(fmt::runtime(axes), 1 / by) + " ObjectInstance \"o\"\n"));
-      TextureStore textures;
-      Diagnostics said;
-      const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
-      worst.see(scene == nullptr && said.has_errors() ? 0 : 1, fmt::format("{} {}", axes, by));
+      const BuiltWorld built = build_world(std::move(planned.world));
+      worst.see(built.scene == nullptr && built.said.has_errors() ? 0 : 1, fmt::format("{} {}", axes, by));
     }
   }
 }

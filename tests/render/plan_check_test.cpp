@@ -51,7 +51,7 @@ std::vector<Work> work_of(const Traced& t) {
           {"rays through interfaces", needs(Effect::Interfaces), s.passing_rays},
           {"alpha tests", needs(Effect::Alpha), s.alpha_tests},
           {"texture values", textured, s.texture_values},
-          {"lookups in pictures", pictures, t.built.textures.statistics().lookups},
+          {"lookups in pictures", pictures, t.built.textures().statistics().lookups},
           {"lens samples", needs(Effect::DepthOfField), s.lens_samples},
           {"time samples", needs(Effect::MotionBlur), s.time_samples}};
 }

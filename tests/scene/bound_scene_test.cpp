@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/plugin/registry.h"
+#include "parser/lexer.h"
 #include "tests/plugin/shading_points.h"
 #include "tests/scene/scene_text.h"
 

@@ -10,11 +10,10 @@ namespace {
 /// What building `world` reports, as the user sees it.
 std::string said_of(const std::string& world) {
   test::Planned planned("WorldBegin\nLightSource \"point\"\n" + world + "\nWorldEnd\n");
-  Diagnostics said;
-  TextureStore textures;
-  EXPECT_TRUE(build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said));
+  const BuiltWorld built = build_world(std::move(planned.world));
+  EXPECT_TRUE(built.scene);
   std::string text;
-  for (const Diagnostic& d : said.all()) text += planned.sources.render_diagnostic(d, false);
+  for (const Diagnostic& d : built.said.all()) text += planned.sources.render_diagnostic(d, false);
   return text;
 }
 
@@ -57,9 +56,9 @@ TEST(Build, ShapesKeepTheOrderOfTheFile) {
     text += "]\n";
   }
   test::Planned planned(text + "WorldEnd\n");
-  TextureStore textures;
-  Diagnostics said;
-  const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, said);
+  const BuiltWorld built = build_world(std::move(planned.world));
+  const Diagnostics& said = built.said;
+  const Scene* const scene = built.scene.get();
   ASSERT_TRUE(scene);
   ASSERT_EQ(scene->shapes.size(), kCount);
   for (size_t i = 0; i < kCount; ++i) {

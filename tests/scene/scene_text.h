@@ -1,16 +1,13 @@
-// From the text of a scene to a plan and to a built scene, as tools/whit goes.
+// From the text of a scene to a plan and to a built scene, by the steps of core/session.
 #pragma once
 
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
-#include "core/scene/effect_plan.h"
-#include "core/scene/problems.h"
-#include "core/scene/scene.h"
-#include "parser/lexer.h"
-#include "parser/parse.h"
+#include "core/session/session.h"
 
 namespace whit::test {
 
@@ -21,56 +18,49 @@ struct SceneFile {
 
 /// A parsed, bound and planned scene with everything it refers to. Anything said about it fails the test.
 struct Planned {
-  Sources sources;
-  ParseResult parsed;
-  BoundScene bound;
-  EffectPlan plan;
+  ParsedFile file;
+  PlannedWorld world;
+  const Sources& sources = *file.sources;
+  BoundScene& bound = world.bound;
+  EffectPlan& plan = world.plan;
   Diagnostics warnings;  ///< Of binding and building, where they are allowed.
 
   enum class Warnings { Failures, Allowed };
   explicit Planned(const std::string& text, Warnings mode = Warnings::Failures, const PlanOptions& options = {})
-      : parsed(parse_text(sources, "test.pbrt", text, "")) {
-    plan_world(mode, options);
-  }
-  explicit Planned(const SceneFile& file, Warnings mode = Warnings::Failures, const PlanOptions& options = {})
-      : parsed(parse_file(sources, file.path)) {
-    plan_world(mode, options);
-  }
+      : Planned(read_scene_text("test.pbrt", text), mode, options) {}
+  explicit Planned(const SceneFile& scene, Warnings mode = Warnings::Failures, const PlanOptions& options = {})
+      : Planned(read_scene_file(scene.path), mode, options) {}
   Planned(const Planned&) = delete;
   Planned& operator=(const Planned&) = delete;
 
-  const SceneDescription& description() const { return parsed.scenes[0]; }
+  const SceneDescription& description() const { return file.worlds[0]; }
 
   void expect_silence(const Diagnostics& said) const {
     for (const Diagnostic& d : said.all()) ADD_FAILURE() << sources.render_diagnostic(d, false);
   }
 
  private:
-  void plan_world(Warnings mode, const PlanOptions& options) {
-    if (mode == Warnings::Failures) expect_silence(parsed.diagnostics);
-    if (parsed.scenes.size() != 1) throw std::runtime_error("not one world");
-    Diagnostics said;
-    const ValuePosition position = [this](const Parameter& p, size_t i) { return value_position(sources, p, i); };
-    bound = bind_scene(parsed.scenes[0], position, said, !options.off.has(Effect::Textures));
-    plan = plan_effects(bound, options);
-    if (mode == Warnings::Failures) expect_silence(said);
-    warnings = weigh_problems(bound, plan);
+  Planned(ParsedFile parsed, Warnings mode, const PlanOptions& options) : file(std::move(parsed)) {
+    if (mode == Warnings::Failures) expect_silence(file.said);
+    if (file.worlds.size() != 1) throw std::runtime_error("not one world");
+    world = plan_world(description(), sources, options);
+    if (mode == Warnings::Failures) expect_silence(world.said);
+    warnings = world.said;
   }
 };
 
 /// The same, built.
 struct BuiltScene : Planned {
-  TextureStore textures;
-  std::unique_ptr<Scene> scene;
+  BuiltWorld built;
+  Scene* scene = nullptr;
+  const TextureStore& textures() const { return *built.textures; }
 
   template <class Source>  // std::string or SceneFile
   explicit BuiltScene(const Source& source, const BuildOptions& options = {}, Warnings mode = Warnings::Failures,
                       const PlanOptions& plan_options = {})
-      : Planned(source, mode, plan_options) {
-    Diagnostics said;
-    scene = build_scene(std::move(bound), std::move(plan), options, textures, said);
-    if (mode == Warnings::Failures) expect_silence(said);
-    warnings.append(said);
+      : Planned(source, mode, plan_options), built(build_world(std::move(world), options)), scene(built.scene.get()) {
+    if (mode == Warnings::Failures) expect_silence(built.said);
+    warnings.append(built.said);
     if (!scene) throw std::runtime_error("not built");
   }
 };

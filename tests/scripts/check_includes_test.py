@@ -9,8 +9,9 @@ import unittest
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools", "check-includes")
 
 # The least tree in which every folder has a header to include.
-HEADERS = ["core/base/vec.h", "core/plugin/light.h", "core/batch/batch.h", "core/lobe/lobe.h", "core/image/image.h", "core/color/color.h",
-           "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h", "parser/scene_description.h",
+HEADERS = ["core/base/vec.h", "core/plugin/light.h", "core/batch/batch.h", "core/lobe/lobe.h", "core/image/image.h",
+           "core/color/color.h", "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h",
+           "core/session/session.h", "parser/scene_description.h",
            "parser/tokens.h", "plugins/shared/sky.h", "plugins/lights/lamp.h", "tools/whit/main.h", "tests/base/helper.h"]
 
 
@@ -66,7 +67,7 @@ class CheckIncludes(unittest.TestCase):
 
     def test_core_looks_down_only(self):
         order = ["core/base/vec.h", "core/batch/batch.h", "core/plugin/light.h", "core/image/image.h", "core/color/color.h",
-                 "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h"]
+                 "core/accel/accel.h", "core/scene/scene.h", "core/render/render.h", "core/session/session.h"]
         for below, low in enumerate(order):
             for high in order[below + 1:]:
                 self.rejected(os.path.dirname(low) + "/a.cpp", '"%s"' % high, "may include")
@@ -80,7 +81,8 @@ class CheckIncludes(unittest.TestCase):
         self.rejected("parser/a.cpp", "<fmt/format.h>", "parser may include std, Imath")
         self.rejected("parser/a.cpp", "<nlohmann/json.hpp>", "parser may include std, Imath")
 
-    def test_only_scene_sees_the_parser(self):
+    def test_session_and_scene_alone_see_the_parser(self):
+        self.accepted("core/session/a.cpp", '"parser/tokens.h"', '"core/render/render.h"', '"core/color/color.h"')
         self.rejected("core/scene/a.cpp", '"parser/tokens.h"', "only parser/scene_description.h")
         for folder in ["base", "plugin", "batch", "lobe", "image", "color", "accel", "render"]:
             self.rejected("core/%s/a.cpp" % folder, '"parser/scene_description.h"', "core/%s may include" % folder)

@@ -62,17 +62,17 @@ int bench_command(const Arguments& args) {
   };
   Json::Array rows;
   Json::Object report;
-  const auto add = [&](const std::string& name, Sources& sources, LoadedFile file) {
-    Diagnostics& d = file.parsed.diagnostics;
-    for (const SceneDescription& world : file.parsed.scenes) {
+  const auto add = [&](const std::string& name, const ParsedFile& file) {
+    Diagnostics d = file.said;
+    for (const SceneDescription& world : file.worlds) {
       if (d.has_errors()) break;
-      const std::optional<SceneFigures> figures = measure_scene(name, file, world, sources, settings, d);
+      const std::optional<SceneFigures> figures = measure_scene(name, file, world, settings, d);
       if (!figures) break;
       if (!as_json && rows.empty()) print_heading(settings.runs);
       if (!as_json) print_row(*figures);
       rows.push_back(to_json(*figures));
     }
-    print_diagnostics(sources, d);
+    print_diagnostics(*file.sources, d);
     if (d.has_errors()) code = exit_code(d);
   };
   const TemporaryFolder folder;
@@ -83,14 +83,9 @@ int bench_command(const Arguments& args) {
     if (!as_json) print_ingestion(ingestion);
   }
   for (const BenchScene& scene : bench_scenes()) {
-    if (!wanted(scene.name)) continue;
-    Sources sources;
-    add(scene.name, sources, load_text(sources, scene.name, scene.text(folder.path())));
+    if (wanted(scene.name)) add(scene.name, read_scene_text(scene.name, scene.text(folder.path())));
   }
-  for (const std::string& path : files) {
-    Sources sources;
-    add(path, sources, load_file(sources, path));
-  }
+  for (const std::string& path : files) add(path, read_scene(path));
   report.emplace_back("scenes", rows);
   if (as_json) fmt::print("{}\n", to_text(report));
   return code;

@@ -9,8 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/scene/scene.h"
-#include "tools/whit/load.h"
+#include "core/session/session.h"
 
 namespace whit {
 namespace {
@@ -106,11 +105,10 @@ std::array<Spread, N> repeat(int runs, const Measure& measure) {
 
 void measure_text(const std::string& path, int runs, Ingestion& out) {
   const auto [spread] = repeat<1>(runs, [&] {
-    Sources sources;
-    const LoadedFile file = load_file(sources, path);
-    if (file.parsed.diagnostics.has_errors()) throw std::runtime_error("the scene made for measuring has errors");
-    out.text_megabytes = static_cast<double>(file.parsed.bytes) / 1e6;
-    return std::array{out.text_megabytes / file.parse_seconds};
+    const ParsedFile file = read_scene_file(path);
+    if (file.said.has_errors()) throw std::runtime_error("the scene made for measuring has errors");
+    out.text_megabytes = static_cast<double>(file.bytes) / 1e6;
+    return std::array{out.text_megabytes / file.seconds};
   });
   out.text_mb_per_s = spread;
 }
@@ -119,16 +117,12 @@ void measure_ply(const std::string& path, int runs, Ingestion& out) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   out.ply_megabytes = static_cast<double>(file.tellg()) / 1e6;
   const auto [read, build] = repeat<2>(runs, [&] {
-    Sources sources;
-    const LoadedFile scene_file = load_text(
-        sources, "ply", fmt::format("{}Shape \"plymesh\" \"string filename\" \"{}\"\nWorldEnd\n", kHead, path));
-    Diagnostics diagnostics;
-    PlannedScene planned = plan_scene(scene_file.parsed.scenes.at(0), sources, diagnostics);
-    TextureStore textures;
-    const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), {}, textures, diagnostics);
-    if (!scene || diagnostics.has_errors()) throw std::runtime_error("the mesh made for measuring has errors");
-    const BuildSeconds& seconds = scene->build_seconds;
-    out.triangles = static_cast<double>(scene->triangle_count());
+    const ParsedFile scene_file =
+        read_scene_text("ply", fmt::format("{}Shape \"plymesh\" \"string filename\" \"{}\"\nWorldEnd\n", kHead, path));
+    const BuiltWorld built = build_world(plan_world(scene_file.worlds.at(0), *scene_file.sources));
+    if (!built.scene || built.said.has_errors()) throw std::runtime_error("the mesh made for measuring has errors");
+    const BuildSeconds& seconds = built.scene->build_seconds;
+    out.triangles = static_cast<double>(built.scene->triangle_count());
     return std::array{out.ply_megabytes / seconds.read, out.triangles / 1e6 / (seconds.bake + seconds.accelerate)};
   });
   out.ply_mb_per_s = read, out.build_mtris_per_s = build;

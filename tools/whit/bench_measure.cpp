@@ -2,7 +2,6 @@
 
 #include <tbb/task_arena.h>
 
-#include <chrono>
 #include <numeric>
 #include <random>
 
@@ -13,23 +12,14 @@
 namespace whit {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-/// The scene, built for measuring, with the seconds that took; null when it cannot be.
-struct BuiltScene {
-  TextureStore textures;
-  std::unique_ptr<Scene> scene;
-  double seconds = 0;
-};
-
-std::unique_ptr<BuiltScene> build(const SceneDescription& world, const Sources& sources, const BuildOptions& options,
-                                  Diagnostics& diagnostics) {
-  auto built = std::make_unique<BuiltScene>();
-  PlannedScene planned = plan_scene(world, sources, diagnostics);
-  const auto start = Clock::now();
-  built->scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, built->textures, diagnostics);
-  built->seconds = std::chrono::duration<double>(Clock::now() - start).count();
-  if (!built->scene || diagnostics.has_errors()) return nullptr;
+/// The world, built for measuring; without a scene when that cannot be.
+BuiltWorld build(const SceneDescription& world, const Sources& sources, const BuildOptions& options,
+                 Diagnostics& diagnostics) {
+  PlannedWorld planned = plan_world(world, sources);
+  diagnostics.append(planned.said);
+  BuiltWorld built = build_world(std::move(planned), options);
+  diagnostics.append(built.said);
+  if (diagnostics.has_errors()) built.scene.reset();
   return built;
 }
 
@@ -90,15 +80,17 @@ std::array<double, kStages> SceneFigures::stage_shares() const {
   return shares;
 }
 
-std::optional<SceneFigures> measure_scene(const std::string& name, const LoadedFile& file,
-                                          const SceneDescription& world, const Sources& sources,
-                                          const BenchSettings& settings, Diagnostics& diagnostics) {
+std::optional<SceneFigures> measure_scene(const std::string& name, const ParsedFile& file,
+                                          const SceneDescription& world, const BenchSettings& settings,
+                                          Diagnostics& diagnostics) {
   BuildOptions options;
-  auto built = build(world, sources, options, diagnostics);
-  if (!built) return std::nullopt;
-  options.samples_per_pixel = fewer_samples(*built->scene, settings.most_camera_samples);
-  if (options.samples_per_pixel > 0) built = build(world, sources, options, diagnostics);
-  const Scene& scene = *built->scene;
+  BuiltWorld built = build(world, *file.sources, options, diagnostics);
+  if (!built.scene) return std::nullopt;
+  options.samples_per_pixel = fewer_samples(*built.scene, settings.most_camera_samples);
+  if (options.samples_per_pixel > 0) {
+    diagnostics.append(set_samples(built, options.samples_per_pixel, options.seed));
+  }
+  const Scene& scene = *built.scene;
 
   SceneFigures out;
   out.name = name;
@@ -115,12 +107,12 @@ std::optional<SceneFigures> measure_scene(const std::string& name, const LoadedF
 
   options.robust_traversal = false;
   Diagnostics repeated;
-  const auto fast = build(world, sources, options, repeated);
-  out.fast_samples_per_s = samples_per_core(*fast->scene, 1, settings.runs).median;
-  out.missed_edges_fast = missed_edges(*fast->scene), out.missed_edges_robust = missed_edges(scene);
-  out.parse_mb_per_s = static_cast<double>(file.parsed.bytes) / 1e6 / std::max(1e-9, file.parse_seconds);
+  const BuiltWorld fast = build(world, *file.sources, options, repeated);
+  out.fast_samples_per_s = samples_per_core(*fast.scene, 1, settings.runs).median;
+  out.missed_edges_fast = missed_edges(*fast.scene), out.missed_edges_robust = missed_edges(scene);
+  out.parse_mb_per_s = static_cast<double>(file.bytes) / 1e6 / std::max(1e-9, file.seconds);
   out.triangles = static_cast<int64_t>(scene.triangle_count());
-  out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built->seconds;
+  out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built.seconds;
   out.peak_memory = peak_memory();
   return out;
 }

@@ -38,8 +38,8 @@ struct SceneFigures {
 };
 
 /// Measures a parsed scene; none with `diagnostics` when the scene cannot be rendered.
-std::optional<SceneFigures> measure_scene(const std::string& name, const LoadedFile& file,
-                                          const SceneDescription& world, const Sources& sources,
-                                          const BenchSettings& settings, Diagnostics& diagnostics);
+std::optional<SceneFigures> measure_scene(const std::string& name, const ParsedFile& file,
+                                          const SceneDescription& world, const BenchSettings& settings,
+                                          Diagnostics& diagnostics);
 
 }  // namespace whit

@@ -1,29 +1,27 @@
 // `whit check`: every problem that a render would meet on its way to the first ray, and in the pictures it would read.
 
-#include "core/scene/scene.h"
+#include "core/session/output.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
-#include "tools/whit/output.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
 
 /// What only building a scene finds: files that cannot be read, geometry that is not what it should be.
-Diagnostics problems_of_building(PlannedScene planned, const std::string& path) {
+Diagnostics problems_of_building(PlannedWorld planned, const std::string& path) {
   Diagnostics found;
   if (planned.bound.film.plugin) {
     OutputRequest request;
     request.scene_path = path;
-    OutputPlan output;
-    if (const auto problem = plan_output(request, planned.bound.film, output)) found.add(problem->diagnostic);
+    found.append(plan_output(request, planned.bound.film).said);
   }
   BuildOptions options;
   options.keep_going = options.only_check = true;
-  TextureStore textures;
-  const auto scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, textures, found);
-  textures.read_all();
-  found.append(textures.errors());
+  const BuiltWorld built = build_world(std::move(planned), options);
+  found.append(built.said);
+  built.textures->read_all();
+  found.append(built.textures->errors());
   return found;
 }
 
@@ -40,12 +38,10 @@ int check_command(const Arguments& args) {
   if (!parse_arguments(command, args, code)) return code;
   if (scenes.empty()) scenes.push_back("-");
   for (const std::string& path : scenes) {
-    Sources sources;
-    const ParseOptions everything{.read_unplaced = true};
-    const Diagnostics all = all_problems(load_file(sources, path, everything), sources, [&](PlannedScene planned) {
-      return problems_of_building(std::move(planned), path);
-    });
-    print_diagnostics(sources, unexcused(all));
+    const ParsedFile file = read_scene(path, {.read_unplaced = true});
+    const Diagnostics all =
+        all_problems(file, [&](PlannedWorld planned) { return problems_of_building(std::move(planned), path); });
+    print_diagnostics(*file.sources, unexcused(all));
     if (!all.all().empty()) code = kNo;
   }
   return code;

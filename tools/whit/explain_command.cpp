@@ -94,7 +94,7 @@ void print_left_out(const std::vector<LeftOut>& left_out, const Sources& sources
   }
 }
 
-void print_world(const PlannedScene& world, const Sources& sources) {
+void print_world(const PlannedWorld& world, const Sources& sources) {
   print_on(world.plan, sources);
   print_off(world.plan, sources);
   print_left_out(find_left_out(world.bound, world.plan), sources);
@@ -133,7 +133,7 @@ Json describe_left_out(const LeftOut& l, const Sources& sources) {
   return j;
 }
 
-Json describe(const PlannedScene& p, const Sources& sources) {
+Json describe(const PlannedWorld& p, const Sources& sources) {
   Json::Array effects, left_out, not_simulated;
   for_effects(EffectSet::all(), [&](Effect e) { effects.push_back(describe_use(e, p.plan, sources)); });
   for (const LeftOut& l : find_left_out(p.bound, p.plan)) left_out.push_back(describe_left_out(l, sources));
@@ -143,9 +143,9 @@ Json describe(const PlannedScene& p, const Sources& sources) {
   return Json::Object{{"effects", effects}, {"left_out", left_out}, {"not_simulated", not_simulated}};
 }
 
-void print_json(const std::vector<PlannedScene>& worlds, const Sources& sources) {
+void print_json(const std::vector<PlannedWorld>& worlds, const Sources& sources) {
   Json::Array described;
-  for (const PlannedScene& world : worlds) described.push_back(describe(world, sources));
+  for (const PlannedWorld& world : worlds) described.push_back(describe(world, sources));
   fmt::print("{}\n", to_text(Json::Object{{"worlds", described}}));
 }
 
@@ -166,12 +166,13 @@ int explain_command(const Arguments& args) {
     say("whit explain: " + problem);
     return kUsage;
   }
-  Sources sources;
-  LoadedFile file = load_file(sources, path);
-  Diagnostics all = file.parsed.diagnostics;
-  std::vector<PlannedScene> worlds;
-  for (const SceneDescription& world : file.parsed.scenes) {
-    worlds.push_back(plan_scene(world, sources, all, plan_options(flags)));
+  const ParsedFile file = read_scene(path);
+  const Sources& sources = *file.sources;
+  Diagnostics all = file.said;
+  std::vector<PlannedWorld> worlds;
+  for (const SceneDescription& world : file.worlds) {
+    worlds.push_back(plan_world(world, sources, plan_options(flags)));
+    all.append(worlds.back().said);
   }
   print_diagnostics(sources, all);
   if (all.has_errors()) return exit_code(all);

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/session/output.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/effect_flags.h"
-#include "tools/whit/output.h"
 
 namespace whit {
 

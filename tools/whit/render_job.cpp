@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -21,27 +20,21 @@
 namespace whit {
 namespace {
 
-double since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// One scene file on its way to pictures.
 class RenderJob {
  public:
-  RenderJob(const RenderSettings& settings, std::string path) : settings_(settings), path_(std::move(path)) {}
+  RenderJob(const RenderSettings& settings, std::string path)
+      : settings_(settings), path_(std::move(path)), file_(read_scene(path_)), parsed_memory_(resident_memory()) {}
 
   int run() {
-    LoadedFile file = load_file(sources_, path_);
-    times_.parse = file.parse_seconds;
-    parsed_memory_ = resident_memory();
+    times_.parse = file_.seconds;
     // A file with mistakes is reported whole: also what planning would have said of it.
-    reported_whole_ = file.parsed.diagnostics.has_errors();
-    const Diagnostics found = reported_whole_ ? all_problems(file, sources_) : file.parsed.diagnostics;
-    if (int code = report(found); code != kDone) return code;
-    if (file.parsed.scenes.empty()) return kSceneError;
+    reported_whole_ = file_.said.has_errors();
+    if (int code = report(reported_whole_ ? all_problems(file_) : file_.said); code != kDone) return code;
+    if (file_.worlds.empty()) return kSceneError;
     int worst = kDone;
-    for (const SceneDescription& world : file.parsed.scenes) {
-      const int code = render_world(world);
+    for (const SceneDescription& world : file_.worlds) {
+      const int code = picture_of(world);
       if (code != kDone && code != kLimit) return code;
       worst = std::max(worst, code);
       times_ = {};
@@ -64,16 +57,25 @@ class RenderJob {
     return kDone;
   }
 
-  int refuse(const OutputProblem& problem) const {
-    if (problem.diagnostic.where.known()) {
-      Diagnostics d;
-      d.add(problem.diagnostic);
-      print_diagnostics(sources_, d);
-      log(d);
-    } else {
-      say("whit: " + problem.diagnostic.message);
+  /// Says what there is to say of the files to be written, and the first error. Without a place in the scene they are of
+  /// the command line or of the disk, and end the render in any case.
+  int report_output(const Diagnostics& said) const {
+    for (const Diagnostic& d : said.all()) {
+      if (d.severity == Severity::Warning) say("whit: warning: " + d.message);
     }
-    return problem.exit_code;
+    for (const Diagnostic& d : said.all()) {
+      if (d.severity != Severity::Error) continue;
+      Diagnostics first;
+      first.add(d);
+      if (d.where.known()) {
+        print_diagnostics(sources_, first);
+        log(first);
+      } else {
+        say("whit: " + d.message);
+      }
+      return exit_code(first);
+    }
+    return kDone;
   }
 
   void log(const Diagnostics& d) const {
@@ -82,39 +84,34 @@ class RenderJob {
     for (const Diagnostic& one : d.all()) out << sources_.render_diagnostic(one, false);
   }
 
-  int render_world(const SceneDescription& world) {
-    Diagnostics diagnostics;
-    PlannedScene planned = plan_scene(world, sources_, diagnostics, plan_options(settings_.effects));
+  int picture_of(const SceneDescription& world) {
+    PlannedWorld planned = plan_world(world, sources_, plan_options(settings_.effects));
     // What is wrong explains what is surprising.
-    if (!diagnostics.has_errors()) diagnostics.append(find_surprises(world, planned.plan));
-    if (reported_whole_) diagnostics = {};  // All of it has been said.
+    if (!planned.said.has_errors()) planned.said.append(find_surprises(world, planned.plan));
+    if (reported_whole_) planned.said = {};  // All of it has been said.
     times_.plan = planned.seconds;
     unread_.clear();
     for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);
-    if (int code = report(diagnostics); code != kDone) return code;
+    if (int code = report(planned.said); code != kDone) return code;
     if (!planned.bound.film.plugin) return kSceneError;
 
-    OutputPlan output;
-    if (const auto problem = plan_output(output_request(), planned.bound.film, output)) return refuse(*problem);
+    const OutputPlan output = plan_output(output_request(), planned.bound.film);
+    if (int code = report_output(output.said); code != kDone) return code;
     for (const std::string& name : {output.main_file, output.display_file}) {
       if (name.empty() || written_.insert(name).second) continue;
       say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
     }
-    const auto start = std::chrono::steady_clock::now();
-    Diagnostics building;
-    TextureStore textures;
-    textures.set_memory_limit(static_cast<size_t>(settings_.texture_memory * 1024 * 1024));
-    const std::unique_ptr<Scene> scene =
-        build_scene(std::move(planned.bound), std::move(planned.plan), build_options(), textures, building);
-    times_.build = since(start);
-    if (int code = report(building); code != kDone) return code;
-    if (!scene) return kSceneError;
-    if (!settings_.debug_pixel.empty()) return explain_pixel(*scene, textures);
-    return trace_and_write(*scene, output, textures);
+    const BuiltWorld built =
+        build_world(std::move(planned), build_options(), static_cast<size_t>(settings_.texture_memory * 1024 * 1024));
+    times_.build = built.seconds;
+    if (int code = report(built.said); code != kDone) return code;
+    if (!built.scene) return kSceneError;
+    return settings_.debug_pixel.empty() ? trace_and_write(built, output) : explain_pixel(built);
   }
 
   /// What happens to the sample asked for; to the first that is no number, or else the brightest, when none is.
-  int explain_pixel(const Scene& scene, const TextureStore& textures) {
+  int explain_pixel(const BuiltWorld& built) {
+    const Scene& scene = *built.scene;
     const std::vector<int> asked = numbers_of(settings_.debug_pixel);
     const Vec2i pixel(asked[0], asked[1]), size = scene.camera().film.resolution;
     const int last = scene.samples_per_pixel - 1;
@@ -130,7 +127,7 @@ class RenderJob {
     };
     const uint32_t sample = asked.size() == 3 ? static_cast<uint32_t>(asked[2]) : odd_sample(scene, pixel);
     const std::string account = debug_sample(scene, pixel, sample, place);
-    if (const int code = report(textures.errors()); code != kDone) return code;
+    if (const int code = report(built.textures->errors()); code != kDone) return code;
     fmt::print("{}", account);
     return kDone;
   }
@@ -152,22 +149,17 @@ class RenderJob {
     return o;
   }
 
-  int trace_and_write(const Scene& scene, const OutputPlan& output, const TextureStore& textures) {
-    const RenderResult result = trace(scene, textures);
+  int trace_and_write(const BuiltWorld& built, const OutputPlan& output) {
+    const RenderedWorld rendered = trace(built);
+    const RenderResult& result = rendered.result;
     times_.render = result.seconds;
-    if (int code = report(textures.errors()); code != kDone) return code;
-    const auto start = std::chrono::steady_clock::now();
-    std::vector<std::string> notes;
-    const std::string problem = write_output(output, result.picture, metadata(scene, result), notes);
-    times_.write = since(start);
-    for (const std::string& note : notes) say("whit: warning: " + note);
-    if (!problem.empty()) {
-      say("whit: " + problem);
-      return kFileError;
-    }
+    if (int code = report(rendered.said); code != kDone) return code;
+    const WrittenOutput written = write_output(output, result.picture, metadata(*built.scene, result));
+    times_.write = written.seconds;
+    if (int code = report_output(written.said); code != kDone) return code;
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
     if (settings_.quiet) return kDone;
-    summarise({scene, result, output, textures, times_, unread_.size(), parsed_memory_}, settings_.stats);
+    summarise({*built.scene, result, output, *built.textures, times_, unread_.size(), parsed_memory_}, settings_.stats);
     if (!passed_.empty()) name_what_was_passed();
     return kDone;
   }
@@ -184,11 +176,11 @@ class RenderJob {
                     n == 1 ? "" : "the first: ", first.message, where));
   }
 
-  /// Renders; a texture that cannot be read ends it, for there will be no picture.
-  RenderResult trace(const Scene& scene, const TextureStore& textures) const {
+  /// Renders, with what there is to see of it meanwhile.
+  RenderedWorld trace(const BuiltWorld& built) const {
     RenderOptions options;
     options.threads = settings_.threads;
-    const Vec2i size = scene.camera().film.resolution;
+    const Vec2i size = built.scene->camera().film.resolution;
     if (!settings_.crop.empty()) {
       options.crop_given = true;
       std::copy(settings_.crop.begin(), settings_.crop.end(), options.crop);
@@ -202,17 +194,15 @@ class RenderJob {
     }
     DisplayServer viewer;
     if (!settings_.display_server.empty()) show_in(viewer, size, options);
-    const auto finish = [&](RenderResult result) {
-      if (options.tile_done) viewer.update(result.picture.window, result.picture.rgb);
-      return result;
-    };
     std::optional<Progress> progress;
     if (!settings_.quiet) progress.emplace("rendering");
     options.progress = [&](double share) {
       if (progress) progress->update(share);
-      return settings_.keep_going || !textures.failed();
+      return true;
     };
-    return finish(render(scene, options));
+    RenderedWorld rendered = render_world(built, options);
+    if (options.tile_done) viewer.update(rendered.result.picture.window, rendered.result.picture.rgb);
+    return rendered;
   }
 
   /// Previews go to the viewer while it can be reached; the render does not depend on it.
@@ -236,9 +226,10 @@ class RenderJob {
 
   const RenderSettings& settings_;
   const std::string path_;
-  Sources sources_;
+  const ParsedFile file_;
+  const Sources& sources_ = *file_.sources;
+  const double parsed_memory_;  ///< Resident after parsing, in bytes.
   StepTimes times_;
-  double parsed_memory_ = 0;        ///< Resident after parsing, in bytes.
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
   bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.
   std::vector<Diagnostic> passed_;  ///< Errors that --keep-going went past.

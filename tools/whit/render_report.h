@@ -3,7 +3,7 @@
 
 #include "core/render/render.h"
 #include "core/scene/scene.h"
-#include "tools/whit/output.h"
+#include "core/session/output.h"
 
 namespace whit {
 

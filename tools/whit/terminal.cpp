@@ -13,6 +13,8 @@
 #include <tuple>
 #include <vector>
 
+#include "tools/whit/commands.h"
+
 namespace whit {
 
 bool use_colour() { return isatty(STDERR_FILENO) != 0 && std::getenv("NO_COLOR") == nullptr; }
@@ -68,8 +70,9 @@ int exit_code(const Diagnostics& diagnostics) {
   int code = 0;
   for (const Diagnostic& d : diagnostics.all()) {
     if (d.severity != Severity::Error) continue;
-    if (d.error_class == ErrorClass::Scene) return 3;
-    code = 4;
+    if (d.error_class == ErrorClass::Scene) return kSceneError;
+    if (d.error_class == ErrorClass::File) code = kFileError;
+    if (d.error_class == ErrorClass::Usage && code == 0) code = kUsage;
   }
   return code;
 }

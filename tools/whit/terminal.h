@@ -19,7 +19,8 @@ void say(const std::string& text);
 /// warnings a hundred. `quiet_warnings` keeps errors only.
 void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, bool quiet_warnings = false);
 
-/// The exit code that errors lead to: 3 when the scene is wrong, 4 when files could not be read, 0 without errors.
+/// The exit code that errors lead to: 3 when the scene is wrong, else 4 when files could not be read or written, else 2
+/// when what was asked for cannot be had; 0 without errors.
 int exit_code(const Diagnostics& diagnostics);
 
 /// Turns every warning into an error (--strict).

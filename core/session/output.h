@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/diagnostics.h"
 #include "core/color/display.h"
 #include "core/image/write.h"
 #include "core/render/render.h"
@@ -13,14 +14,7 @@
 
 namespace whit {
 
-/// What a render writes and how.
-struct OutputPlan {
-  std::string main_file;     ///< Linear (.exr, .pfm) or display-encoded (.png, ...), as the scene or --outfile says.
-  std::string display_file;  ///< The PNG beside a linear file; "" when there is none.
-  bool full_float = false;
-  std::unique_ptr<const DisplayTransform> display;
-};
-
+/// What is asked for.
 struct OutputRequest {
   std::string outfile;             ///< --outfile; "" takes the film's.
   std::string scene_path;          ///< For the name when the film has none.
@@ -30,17 +24,24 @@ struct OutputRequest {
   bool full_float = false;
 };
 
-/// What is wrong with a plan: at the Film statement if that asked for it, else without a place.
-struct OutputProblem {
-  Diagnostic diagnostic;
-  int exit_code = 0;
+/// What a render writes and how. Where `said` has an error nothing should be rendered: it is at the Film statement if
+/// that asked for what cannot be had, else it has no place.
+struct OutputPlan {
+  std::string main_file;     ///< Linear (.exr, .pfm) or display-encoded (.png, ...), as the scene or --outfile says.
+  std::string display_file;  ///< The PNG beside a linear file; "" when there is none.
+  bool full_float = false;
+  std::unique_ptr<const DisplayTransform> display;
+  Diagnostics said;
 };
 
 /// Decides the names, checks that the files can be written and that the view exists.
-std::optional<OutputProblem> plan_output(const OutputRequest& request, const Bound<Film>& film, OutputPlan& plan);
+OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film);
 
-/// Writes the files. Returns "" or the error; `notes` gets what should be said.
-std::string write_output(const OutputPlan& plan, const Picture& picture, const std::vector<OutputMetadata>& metadata,
-                         std::vector<std::string>& notes);
+/// What came of writing. Nothing of it has a place in the scene.
+struct WrittenOutput {
+  Diagnostics said;
+  double seconds = 0;
+};
+WrittenOutput write_output(const OutputPlan& plan, const Picture& picture, const std::vector<OutputMetadata>& metadata);
 
 }  // namespace whit

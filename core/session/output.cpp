@@ -1,0 +1,106 @@
+#include "core/session/output.h"
+
+#include <chrono>
+#include <filesystem>
+#include <future>
+
+namespace whit {
+namespace {
+
+OutputImage to_output(const Picture& picture, std::span<const float> rgb) {
+  OutputImage image;
+  image.width = picture.width(), image.height = picture.height();
+  image.x = picture.window.min.x, image.y = picture.window.min.y;
+  image.full_width = picture.resolution.x, image.full_height = picture.resolution.y;
+  image.rgb = rgb;
+  return image;
+}
+
+void choose_names(const OutputRequest& request, const Film& film, OutputPlan& plan) {
+  plan.main_file = !request.outfile.empty() ? request.outfile : film.file_name();
+  if (plan.main_file.empty()) {
+    const std::filesystem::path scene(request.scene_path);
+    plan.main_file = (scene.stem().empty() || request.scene_path == "-" ? "whit" : scene.stem().string()) + ".exr";
+  }
+  if (is_linear_format(plan.main_file) && request.display != "none") {
+    plan.display_file = !request.display.empty()
+                            ? request.display
+                            : std::filesystem::path(plan.main_file).replace_extension(".png").string();
+  }
+}
+
+/// The first file that cannot be written is reported.
+void check_files(const OutputRequest& request, const Bound<Film>& film, OutputPlan& plan) {
+  for (const std::string& path : {plan.main_file, plan.display_file}) {
+    if (path.empty()) continue;
+    std::string problem = check_writable(path);
+    if (problem.empty()) continue;
+    const bool by_film = request.outfile.empty() && !film.plugin->file_name().empty() && path == plan.main_file;
+    plan.said.file_error(by_film ? film.where : SourcePos{}, std::move(problem));
+    return;
+  }
+}
+
+void make_display(const OutputRequest& request, const Bound<Film>& bound, OutputPlan& plan) {
+  const Film& film = *bound.plugin;
+  DisplaySpec spec;
+  spec.config_path = request.ocio;
+  spec.view = !request.view.empty() ? request.view : film.view();
+  spec.exposure = static_cast<float>(request.exposure.value_or(film.exposure()));
+  DisplayResult display = make_display_transform(spec);
+  plan.display = std::move(display.transform);
+  if (display.error.empty()) return;
+  const bool by_film = request.view.empty() && !film.view().empty();
+  const ErrorClass error_class = display.bad_config ? ErrorClass::File
+                                 : by_film          ? ErrorClass::Scene
+                                                    : ErrorClass::Usage;
+  plan.said.add(
+      {Severity::Error, error_class, by_film ? bound.where : SourcePos{}, std::move(display.error), std::string()});
+}
+
+/// Writes one file; what there is to say of it.
+Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Picture& picture,
+                       const std::vector<OutputMetadata>& metadata) {
+  std::vector<float> encoded;
+  if (!is_linear_format(path)) {
+    encoded = picture.rgb;
+    plan.display->apply(encoded.data(), encoded.size() / 3);
+  }
+  OutputImage image = to_output(picture, encoded.empty() ? picture.rgb : encoded);
+  image.metadata = metadata;
+  WriteOptions options;
+  options.full_float = plan.full_float;
+  WriteResult result = write_image(path, image, options);
+  Diagnostics said;
+  if (!result.warning.empty()) said.warning({}, std::move(result.warning));
+  if (!result.ok()) said.file_error({}, std::move(result.error));
+  return said;
+}
+
+}  // namespace
+
+OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film) {
+  OutputPlan plan;
+  plan.full_float = request.full_float;
+  choose_names(request, *film.plugin, plan);
+  check_files(request, film, plan);
+  if (!plan.said.has_errors()) make_display(request, film, plan);
+  return plan;
+}
+
+WrittenOutput write_output(const OutputPlan& plan, const Picture& picture,
+                           const std::vector<OutputMetadata>& metadata) {
+  const auto start = std::chrono::steady_clock::now();
+  WrittenOutput out;
+  // Compressing is most of it, and there is more than one core.
+  std::future<Diagnostics> display;
+  if (!plan.display_file.empty()) {
+    display = std::async(std::launch::async, [&] { return write_file(plan.display_file, plan, picture, metadata); });
+  }
+  out.said = write_file(plan.main_file, plan, picture, metadata);
+  if (display.valid()) out.said.append(display.get());
+  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return out;
+}
+
+}  // namespace whit

@@ -1,0 +1,112 @@
+#include "core/session/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "core/scene/problems.h"
+#include "parser/lexer.h"
+
+namespace whit {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+ParsedFile parsed_file(const std::function<ParseResult(Sources&)>& parse) {
+  const auto start = Clock::now();
+  ParsedFile file;
+  ParseResult parsed = parse(*file.sources);
+  file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
+  file.seconds = since(start);
+  return file;
+}
+
+/// A build of which effects are compiled out is for measurements, and must not show half of a scene.
+void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
+  for_effects(plan.needed & kCompiledOut, [&](Effect e) {
+    diagnostics.error(plan.use(e).causes.front().where, std::string("this build lacks ") + effect_name(e),
+                      "configure one without WHIT_COMPILE_OUT, or switch it off with --without");
+  });
+}
+
+}  // namespace
+
+ParsedFile read_scene_file(const std::string& path, const ParseOptions& options) {
+  return parsed_file([&](Sources& sources) { return parse_file(sources, path, options); });
+}
+
+ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options) {
+  return parsed_file([&](Sources& sources) { return parse_text(sources, name, std::move(text), "", options); });
+}
+
+PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options) {
+  const auto start = Clock::now();
+  PlannedWorld out;
+  const ValuePosition position = [&sources](const Parameter& p, size_t i) { return value_position(sources, p, i); };
+  Diagnostics unweighed;
+  out.bound = bind_scene(world, position, unweighed, !options.off.has(Effect::Textures));
+  out.plan = plan_effects(out.bound, options);
+  out.said = weigh_problems(out.bound, out.plan);
+  check_build(out.plan, out.said);
+  out.seconds = since(start);
+  return out;
+}
+
+Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics(PlannedWorld)>& further) {
+  Diagnostics all = file.said;
+  Diagnostics planning, found;
+  for (const SceneDescription& world : file.worlds) {
+    PlannedWorld planned = plan_world(world, *file.sources);
+    planning.append(planned.said);
+    // What is wrong explains what is surprising.
+    if (!all.has_errors() && !planning.has_errors()) planning.append(find_surprises(world, planned.plan));
+    if (further) found.append(further(std::move(planned)));
+  }
+  for (const Diagnostic& d : planning.all()) {
+    // One place, one message: the parser has said what is wrong there, planning only met the consequence.
+    const auto same_place = [&](const Diagnostic& o) {
+      return o.where.known() && o.where.file == d.where.file && o.where.offset == d.where.offset;
+    };
+    if (std::none_of(all.all().begin(), all.all().end(), same_place)) all.add(d);
+  }
+  all.append(found);
+  return all;
+}
+
+BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options, size_t texture_bytes) {
+  const auto start = Clock::now();
+  BuiltWorld out;
+  out.textures = std::make_unique<TextureStore>();
+  out.textures->set_memory_limit(texture_bytes);
+  out.keep_going = options.keep_going;
+  out.scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, *out.textures, out.said);
+  out.seconds = since(start);
+  return out;
+}
+
+Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed) {
+  Diagnostics said;
+  Bound<Sampler>& sampler = world.scene->bound.sampler;
+  sampler.plugin->seed = seed;
+  PrepareContext context;
+  context.diagnostics = &said;
+  context.statement = sampler.where;
+  context.textures = world.textures.get();
+  context.samples_per_pixel = world.scene->samples_per_pixel = sampler.plugin->set_samples_per_pixel(samples_per_pixel);
+  sampler.plugin = prepared(std::move(sampler.plugin), context);
+  return said;
+}
+
+RenderedWorld render_world(const BuiltWorld& world, RenderOptions options) {
+  options.progress = [&world, report = std::move(options.progress)](double share) {
+    return (!report || report(share)) && (world.keep_going || !world.textures->failed());
+  };
+  RenderedWorld out;
+  out.result = render(*world.scene, options);
+  out.said = world.textures->errors();
+  return out;
+}
+
+}  // namespace whit

@@ -1,0 +1,69 @@
+// From a file to pictures: parse, plan, build, render and write (core/session/output.h), each step written once. Whoever
+// renders (the command, the benchmark, tests, a program that has whit as a library) takes one step after another and
+// decides in between what to do about what was said.
+//
+// A step returns what it made with all that was said of it and the seconds it took. It neither prints nor exits. Where
+// `said` has errors, what was made is what is usable, and may be taken on; ErrorClass says what kind of error it is.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/image/texture_store.h"
+#include "core/render/render.h"
+#include "core/scene/scene.h"
+#include "parser/parse.h"
+
+namespace whit {
+
+/// A parsed file with its text, to which all that is made of it refers: it must outlive that.
+struct ParsedFile {
+  std::unique_ptr<Sources> sources = std::make_unique<Sources>();
+  std::vector<SceneDescription> worlds;  ///< One for each WorldBegin.
+  uint64_t bytes = 0;                    ///< Of text, included files counted each time.
+  Diagnostics said;
+  double seconds = 0;
+};
+ParsedFile read_scene_file(const std::string& path, const ParseOptions& options = {});
+/// Text that is no file, under the name that messages show; what it includes is looked for in the current folder.
+ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options = {});
+
+/// One world of a file, its statements bound, and what the picture needs of them. Nothing is read yet.
+struct PlannedWorld {
+  BoundScene bound;
+  EffectPlan plan;
+  Diagnostics said;
+  double seconds = 0;
+};
+PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options = {});
+
+/// Everything wrong with a file: what parsing found, what planning its worlds finds in addition, and what `further`
+/// finds in each. For files with mistakes, where nothing else will be done with the worlds.
+Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics(PlannedWorld)>& further = {});
+
+/// A world that can be traced, as often as one likes.
+struct BuiltWorld {
+  std::unique_ptr<TextureStore> textures;
+  std::unique_ptr<Scene> scene;  ///< Null when nothing can be rendered.
+  bool keep_going = false;       ///< BuildOptions::keep_going, for render_world().
+  Diagnostics said;
+  double seconds = 0;
+};
+BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options = {},
+                       size_t texture_bytes = TextureStore::kDefaultMemory);
+
+/// Another number of samples per pixel (as the sampler rounds it) and another seed, for what is rendered from now on: the
+/// picture is that of a world that was built with them. Not while the world is being rendered.
+Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed);
+
+/// A picture, with what was done for it. A texture that cannot be read ends the render early, unless the world was built
+/// to keep going.
+struct RenderedWorld {
+  RenderResult result;
+  Diagnostics said;
+};
+RenderedWorld render_world(const BuiltWorld& world, RenderOptions options = {});
+
+}  // namespace whit
