@@ -17,8 +17,6 @@ struct CameraRays {
   Vec3Lanes o;              ///< Origin, in scene units.
   Vec3Lanes d;              ///< Unit direction.
   float* weight = nullptr;  ///< Multiplies the radiance; 0 for a ray that does not reach the film.
-  /// Rays one pixel further in x and y, null when not wanted.
-  Vec3Lanes rx_o, rx_d, ry_o, ry_d;
 };
 
 /// What a camera is told of the film before prepare().
@@ -37,6 +35,9 @@ class Camera : public Plugin {
   virtual bool needs_lens() const { return false; }
   EffectSet effects() const override { return needs_lens() ? EffectSet{Effect::DepthOfField} : EffectSet{}; }
   virtual void generate(const CameraRays& rays) const = 0;
+  /// Of generated rays those one pixel further along x (axis 0) or y (axis 1), through the same point of the lens: what
+  /// generate() gives there. A camera that may stop the one and not the other says itself what is there instead.
+  virtual void generate_neighbours(const CameraRays& rays, int axis, const Vec3Lanes& o, const Vec3Lanes& d) const;
 };
 
 /// The shutter parameters every camera has.

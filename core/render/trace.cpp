@@ -53,21 +53,21 @@ void sample_lens(Worker& worker, const SampleKeys& keys, CameraRays& out) {
 }
 
 /// Takes camera-space rays to render space; a moving camera has its own matrix for every ray.
-void place_rays(const Scene& scene, const float* time, const CameraRays& rays) {
+void place_rays(const Scene& scene, const float* time, const Rays& rays) {
+  const RayDifferentials& next = rays.differentials;
   const auto apply = [&](const Mat4d& m, int i) {
     const auto point = [&](const Vec3Lanes& p) { p.set(i, Vec3f(transform_point(m, Vec3d(p[i])))); };
     // Divided by the camera's own scale, directions stay unit vectors and differentials keep their ratio.
     const double scale = transform_vector(m, Vec3d(rays.d[i])).length();
     const auto vector = [&](const Vec3Lanes& v) { v.set(i, Vec3f(transform_vector(m, Vec3d(v[i])) / scale)); };
-    point(rays.o), vector(rays.rx_d ? rays.rx_d : rays.d);
-    if (!rays.rx_d) return;
-    point(rays.rx_o), point(rays.ry_o), vector(rays.ry_d), vector(rays.d);
+    point(rays.o), vector(rays.d);
+    if (next) point(next.rx_o), point(next.ry_o), vector(next.rx_d), vector(next.ry_d);
   };
   for (int i = 0; i < rays.n; ++i) apply(interpolate_keys(scene.camera_keys, time ? time[i] : 0), i);
 }
 
 /// The same for a camera that stands still: one float matrix for all.
-void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
+void place_rays_still(const Mat4d& camera, const Rays& rays) {
   float m[4][3];
   for (int r = 0; r < 4; ++r) {
     for (int c = 0; c < 3; ++c) m[r][c] = static_cast<float>(camera[r][c]);
@@ -78,13 +78,13 @@ void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
   };
   const Vec3f move(m[3][0], m[3][1], m[3][2]);
   // All directions of a ray are divided by the length that its own has now: their ratio must stay.
-  if (rays.rx_d) {
+  if (const RayDifferentials& next = rays.differentials) {
     for_lanes(rays.n, [&](int i) {
       const float inverse = 1 / length(rotate(rays.d[i]));
-      rays.rx_o.set(i, rotate(rays.rx_o[i]) + move);
-      rays.ry_o.set(i, rotate(rays.ry_o[i]) + move);
-      rays.rx_d.set(i, rotate(rays.rx_d[i]) * inverse);
-      rays.ry_d.set(i, rotate(rays.ry_d[i]) * inverse);
+      next.rx_o.set(i, rotate(next.rx_o[i]) + move);
+      next.ry_o.set(i, rotate(next.ry_o[i]) + move);
+      next.rx_d.set(i, rotate(next.rx_d[i]) * inverse);
+      next.ry_d.set(i, rotate(next.ry_d[i]) * inverse);
     });
   }
   for_lanes(rays.n, [&](int i) {
@@ -95,14 +95,15 @@ void place_rays_still(const Mat4d& camera, const CameraRays& rays) {
 }
 
 /// pbrt shrinks footprints by 1/sqrt(samples per pixel): a sample stands for its share of the pixel.
-void scale_differentials(const CameraRays& rays, int samples_per_pixel) {
+void scale_differentials(const Rays& rays, int samples_per_pixel) {
+  const RayDifferentials& next = rays.differentials;
   const float s = 1 / std::sqrt(static_cast<float>(samples_per_pixel));
   for_lanes(rays.n, [&](int i) {
     const Vec3f o = rays.o[i], d = rays.d[i];
-    rays.rx_o.set(i, o + (rays.rx_o[i] - o) * s);
-    rays.ry_o.set(i, o + (rays.ry_o[i] - o) * s);
-    rays.rx_d.set(i, d + (rays.rx_d[i] - d) * s);
-    rays.ry_d.set(i, d + (rays.ry_d[i] - d) * s);
+    next.rx_o.set(i, o + (next.rx_o[i] - o) * s);
+    next.ry_o.set(i, o + (next.ry_o[i] - o) * s);
+    next.rx_d.set(i, d + (next.rx_d[i] - d) * s);
+    next.ry_d.set(i, d + (next.ry_d[i] - d) * s);
   });
 }
 
@@ -130,15 +131,17 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   out.film_x = c.film_x, out.film_y = c.film_y;
   sample_lens(worker, keys, out);
   out.o = rays.o, out.d = rays.d, out.weight = c.ray_weight;
-  out.rx_o = rays.differentials.rx_o, out.rx_d = rays.differentials.rx_d;
-  out.ry_o = rays.differentials.ry_o, out.ry_d = rays.differentials.ry_d;
   scene.camera().generate(out);
-  if (scene.camera_keys.size() == 1 || !compiled_in(Effect::MotionBlur)) {
-    place_rays_still(scene.camera_keys.front(), out);
-  } else {
-    place_rays(scene, c.time, out);
+  if (const RayDifferentials& next = rays.differentials) {
+    scene.camera().generate_neighbours(out, 0, next.rx_o, next.rx_d);
+    scene.camera().generate_neighbours(out, 1, next.ry_o, next.ry_d);
   }
-  if (out.rx_o) scale_differentials(out, scene.samples_per_pixel);
+  if (scene.camera_keys.size() == 1 || !compiled_in(Effect::MotionBlur)) {
+    place_rays_still(scene.camera_keys.front(), rays);
+  } else {
+    place_rays(scene, c.time, rays);
+  }
+  if (rays.differentials) scale_differentials(rays, scene.samples_per_pixel);
   for_lanes(n, [&](int i) {
     rays.throughput.set(i, RGB(1.0f));
     rays.slot[i] = i;

@@ -13,26 +13,17 @@ class Environment final : public ScreenCamera {
   bool needs_lens() const override { return false; }
 
   void generate(const CameraRays& rays) const override {
-    generate_shifted(rays, 0, 0, rays.o, rays.d);
-    if (rays.rx_d) {
-      generate_shifted(rays, 1, 0, rays.rx_o, rays.rx_d);
-      generate_shifted(rays, 0, 1, rays.ry_o, rays.ry_d);
-    }
-    float* weight = rays.weight;
-    for_lanes(rays.n, [=](int i) { weight[i] = 1; });
-  }
-
- private:
-  /// Rays through the film positions plus (dx, dy).
-  void generate_shifted(const CameraRays& rays, float dx, float dy, const Vec3Lanes& o, const Vec3Lanes& d) const {
+    const Vec3Lanes o = rays.o, d = rays.d;
+    float* const weight = rays.weight;
     const float x_turn = static_cast<float>(1.0 / film.resolution.x);
     const float y_turn = static_cast<float>(0.5 / film.resolution.y);
     const float *film_x = rays.film_x, *film_y = rays.film_y;
     for_lanes(rays.n, [=](int i) {
-      const SinCos theta = sin_cos_2pi(y_turn * (film_y[i] + dy));
-      const SinCos phi = sin_cos_2pi(x_turn * (film_x[i] + dx));
+      const SinCos theta = sin_cos_2pi(y_turn * film_y[i]);
+      const SinCos phi = sin_cos_2pi(x_turn * film_x[i]);
       o.set(i, {0, 0, 0});
       d.set(i, {theta.sin * phi.cos, theta.cos, theta.sin * phi.sin});
+      weight[i] = 1;
     });
   }
 };

@@ -22,24 +22,15 @@ class Perspective final : public ScreenCamera {
   }
 
   void generate(const CameraRays& rays) const override {
-    generate_shifted(rays, 0, 0, rays.o, rays.d);
-    if (rays.rx_d) {
-      generate_shifted(rays, 1, 0, rays.rx_o, rays.rx_d);
-      generate_shifted(rays, 0, 1, rays.ry_o, rays.ry_d);
-    }
-    float* weight = rays.weight;
-    for_lanes(rays.n, [=](int i) { weight[i] = 1; });
-  }
-
- private:
-  /// Rays through the film positions plus (dx, dy), each through its own point of the lens.
-  void generate_shifted(const CameraRays& rays, float dx, float dy, const Vec3Lanes& o, const Vec3Lanes& d) const {
+    const Vec3Lanes o = rays.o, d = rays.d;
+    float* const weight = rays.weight;
     const Screen s = screen_;
     const float *film_x = rays.film_x, *film_y = rays.film_y, *lens_u = rays.lens_u, *lens_v = rays.lens_v;
     if (!needs_lens()) {
       for_lanes(rays.n, [=](int i) {
         o.set(i, {0, 0, 0});
-        d.set(i, normalize(Vec3f(s.x(film_x[i] + dx), s.y(film_y[i] + dy), 1)));
+        d.set(i, normalize(Vec3f(s.x(film_x[i]), s.y(film_y[i]), 1)));
+        weight[i] = 1;
       });
       return;
     }
@@ -47,12 +38,14 @@ class Perspective final : public ScreenCamera {
     for_lanes(rays.n, [=](int i) {
       const Vec2f disk = concentric_disk(lens_u[i], lens_v[i]);
       const Vec3f lens(radius * disk.x, radius * disk.y, 0);
-      const Vec3f sharp(focus * s.x(film_x[i] + dx), focus * s.y(film_y[i] + dy), focus);
+      const Vec3f sharp(focus * s.x(film_x[i]), focus * s.y(film_y[i]), focus);
       o.set(i, lens);
       d.set(i, normalize(sharp - lens));
+      weight[i] = 1;
     });
   }
 
+ private:
   Screen screen_;
 };
 

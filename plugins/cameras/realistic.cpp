@@ -257,11 +257,16 @@ class Realistic final : public Camera {
   void generate(const CameraRays& rays) const override {
     for (int first = 0; first < rays.n; first += kBlock) {
       const int n = std::min(kBlock, rays.n - first);
-      const Vec3Lanes o = rays.o.from(first), d = rays.d.from(first);
-      generate_shifted(rays, first, n, 0, 0, o, d, rays.weight + first);
-      if (!rays.rx_d) continue;
-      generate_neighbours(rays, first, n, 1, 0, rays.rx_o.from(first), rays.rx_d.from(first));
-      generate_neighbours(rays, first, n, 0, 1, rays.ry_o.from(first), rays.ry_d.from(first));
+      generate_shifted(rays, first, n, 0, 0, rays.o.from(first), rays.d.from(first), rays.weight + first);
+    }
+  }
+
+  /// Extrapolated from a twentieth of a pixel, to one side or else to the other; the ray itself where neither gets
+  /// through.
+  void generate_neighbours(const CameraRays& rays, int axis, const Vec3Lanes& o, const Vec3Lanes& d) const override {
+    for (int first = 0; first < rays.n; first += kBlock) {
+      const int n = std::min(kBlock, rays.n - first);
+      extrapolate(rays, first, n, axis == 0 ? Vec2d(1, 0) : Vec2d(0, 1), o.from(first), d.from(first));
     }
   }
 
@@ -335,16 +340,14 @@ class Realistic final : public Camera {
     });
   }
 
-  /// Rays a pixel further, extrapolated from a twentieth of it, to one side or else to the other; the ray itself where
-  /// neither gets through.
-  void generate_neighbours(const CameraRays& rays, int first, int n, double dx, double dy, const Vec3Lanes& o,
-                           const Vec3Lanes& d) const {
+  void extrapolate(const CameraRays& rays, int first, int n, Vec2d pixel, const Vec3Lanes& o,
+                   const Vec3Lanes& d) const {
     alignas(64) float storage[8][kBlock];
     const Vec3Lanes other_o{storage[0], storage[1], storage[2]}, other_d{storage[3], storage[4], storage[5]};
     float *const reaches = storage[6], *const other_reaches = storage[7];
     constexpr double kStep = 0.05;
-    generate_shifted(rays, first, n, kStep * dx, kStep * dy, o, d, reaches);
-    generate_shifted(rays, first, n, -kStep * dx, -kStep * dy, other_o, other_d, other_reaches);
+    generate_shifted(rays, first, n, kStep * pixel.x, kStep * pixel.y, o, d, reaches);
+    generate_shifted(rays, first, n, -kStep * pixel.x, -kStep * pixel.y, other_o, other_d, other_reaches);
     const Vec3Lanes from_o = rays.o.from(first), from_d = rays.d.from(first);
     for_lanes(n, [&](int i) {
       const bool ahead = reaches[i] > 0, behind = other_reaches[i] > 0;

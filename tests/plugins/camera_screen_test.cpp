@@ -31,9 +31,9 @@ struct Rays {
     r.film_x = film_x.data() + first, r.film_y = film_y.data() + first;
     if (camera.needs_lens()) r.lens_u = lens_u.data() + first, r.lens_v = lens_v.data() + first;
     r.o = o.vec3().from(first), r.d = d.vec3().from(first), r.weight = weight.data() + first;
-    r.rx_o = rx_o.vec3().from(first), r.rx_d = rx_d.vec3().from(first);
-    r.ry_o = ry_o.vec3().from(first), r.ry_d = ry_d.vec3().from(first);
     camera.generate(r);
+    camera.generate_neighbours(r, 0, rx_o.vec3().from(first), rx_d.vec3().from(first));
+    camera.generate_neighbours(r, 1, ry_o.vec3().from(first), ry_d.vec3().from(first));
   }
   std::vector<float> film_x, film_y, lens_u, lens_v, weight;
   Triples o, d, rx_o, rx_d, ry_o, ry_d;
