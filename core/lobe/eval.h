@@ -21,9 +21,9 @@ LobeFrame make_frame(const ShadingBatch& s);
 /// Which lobes a direction is sampled from.
 enum class LobeKinds : uint8_t { All, NonSpecular, Specular };
 
-/// out f = sum of the non-specular lobes f(wo, wi) |wi . ns|, per steradian, for s.n directions wi. If `pdf` is not null:
-/// the density (solid angle) with which sample_lobes() of the same kinds chooses wi (with All: including the probability
-/// that no specular lobe was chosen instead).
+/// out f = sum of the non-specular lobes f(wo, wi) |wi . ns|, per steradian, for s.n directions wi. If `pdf` is not
+/// null: the density (solid angle) with which sample_lobes() of the same kinds chooses wi (with All: including the
+/// probability that no specular lobe was chosen instead).
 void eval_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
                 const RGBLanes& f, float* pdf = nullptr, LobeKinds kinds = LobeKinds::NonSpecular);
 
@@ -38,9 +38,9 @@ struct LobeSamples {
 };
 
 /// Samples directions: one of the lane's lobes of these kinds is chosen by lobe_u, its density sampled with (u, v), all
-/// in [0, 1). A lobe is chosen in proportion to the light it scatters, about: the luminance of its weight times, if it is
-/// the boundary of a dielectric, Fresnel's factor at wo. That factor is exact for specular lobes, so that smooth glass
-/// reflects as often as it reflects light, and at least 1/10 for rough ones, whose facets have other angles.
+/// in [0, 1). A lobe is chosen in proportion to the light it scatters, about: the luminance of its weight times, if it
+/// is the boundary of a dielectric, Fresnel's factor at wo. That factor is exact for specular lobes, so that smooth
+/// glass reflects as often as it reflects light, and at least 1/10 for rough ones, whose facets have other angles.
 void sample_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& frame, const float* lobe_u,
                   const float* u, const float* v, LobeKinds kinds, const LobeSamples& out);
 

@@ -1,5 +1,5 @@
-// Diffuse lobes: Lambert's and Oren and Nayar's. Lambert, Photometria, 1760; Oren and Nayar, Generalization of Lambert's
-// Reflectance Model, 1994.
+// Diffuse lobes: Lambert's and Oren and Nayar's. Lambert, Photometria, 1760; Oren and Nayar, Generalization of
+// Lambert's Reflectance Model, 1994.
 #include "core/lobe/draw.h"
 #include "core/lobe/formulas.h"
 #include "core/lobe/pair.h"

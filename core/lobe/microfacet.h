@@ -89,8 +89,9 @@ inline float masking_over_cosine(const Distribution& d, const Pair& p) {
   return 2 / (sum > 0 ? sum : 1.0f);
 }
 
-/// The density of directions reflected by visible facets: their own, G1 D |wo . h| / |cos|, over 4 |wo . h|. Heitz 2014.
-/// D is that of microfacet_reflection(), from the same half vector: it cancels in their quotient, rounding and all.
+/// The density of directions reflected by visible facets: their own, G1 D |wo . h| / |cos|, over 4 |wo . h|. Heitz
+/// 2014. D is that of microfacet_reflection(), from the same half vector: it cancels in their quotient, rounding and
+/// all.
 template <class Distribution>
 inline float reflection_density(const Distribution& d, const Pair& p) {
   const Vec3f h = normalize(p.wo + p.wi);
@@ -139,8 +140,8 @@ void for_facets(const LobeQuery& q, const LobeValues& out, const Add& add) {
 inline Vec3f sample_visible_normal(const Vec3f& wo, float ax, float ay, float u, float v) {
   const float side = side_of(wo.z);
   const Vec3f o = normalize({ax * wo.x * side, ay * wo.y * side, wo.z * side});
-  // A point of the unit sphere's part above -o.z; with o it makes the facet of a sphere that mirrors o there. Its height
-  // above -o.z is exact.
+  // A point of the unit sphere's part above -o.z; with o it makes the facet of a sphere that mirrors o there. Its
+  // height above -o.z is exact.
   const float above = (1 - u) * (1 + o.z), z = above - o.z;
   const float r = safe_sqrt((1 - z) * (1 + z));
   const SinCos phi = sin_cos_2pi(v);
@@ -154,7 +155,8 @@ inline Vec3f reflect_at(const Vec3f& wo, const Vec3f& h) {
   return wi * (wi.z * wo.z > 0 ? 1.0f : 0.0f);
 }
 
-/// wo refracted by a facet on its side; the zero vector in total internal reflection, and if it stays above the surface.
+/// wo refracted by a facet on its side; the zero vector in total internal reflection, and if it stays above the
+/// surface.
 inline Vec3f refract_at(const Vec3f& wo, const Vec3f& h, float n) {
   const float c = dot(wo, h);
   const Refraction r = snell(c, n);

@@ -1,5 +1,5 @@
-// Sampling directions: a lobe is chosen for each lane, each lobe draws for the lanes that chose it, and what came out is
-// evaluated by all lobes.
+// Sampling directions: a lobe is chosen for each lane, each lobe draws for the lanes that chose it, and what came out
+// is evaluated by all lobes.
 #include <limits>
 
 #include "core/base/fastmath.h"
@@ -59,7 +59,7 @@ void weigh_specular(const ShadingBatch& s, const int32_t* chosen, int k, const f
     const RGB w = out.weight[i];
     const float density = out.pdf[i];
     const bool mine = chosen[i] == k, came = (w.x != 0) | (w.y != 0) | (w.z != 0);
-    const float scale = mine & came ? 1 / share[i] : 1.0f;
+    const float scale = (mine & came) ? 1 / share[i] : 1.0f;
     const bool none = mine & !came;
     out.wi.set(i, {none ? -wo.x : wi.x, none ? -wo.y : wi.y, none ? -wo.z : wi.z});
     out.weight.set(i, {w.x * scale, w.y * scale, w.z * scale});

@@ -5,8 +5,8 @@
 
 namespace whit {
 
-/// of[lobe][lane], the probability that a lane samples a lobe; null for lobes of other kinds. A lane's add up to 1, or to
-/// 0 where all its lobes are black.
+/// of[lobe][lane], the probability that a lane samples a lobe; null for lobes of other kinds. A lane's add up to 1, or
+/// to 0 where all its lobes are black.
 struct LobeShares {
   float** of;
 };

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """docs/add-a-material.md, followed literally: its plugin compiles, its commands print what the page says, its scene has
-the pixels the page derives, and the generic tests of materials pass with it.
+the pixels the page derives, and the generic tests of materials pass with it. So do those of lobes with its lobe.
 
 The plugin is compiled in a temporary folder with the flags of the other plugins and linked with the objects of the
-build, so that neither the source tree nor the build changes. $WHIT_BINARY_DIR is the build.
+build, so that neither the source tree nor the build changes; so is the lobe. $WHIT_BINARY_DIR is the build.
 """
 import json
 import os
@@ -37,24 +37,24 @@ def must(command, **options):
     return done
 
 
-def compile_command(source, target):
-    """The command that compiles the page's plugin: that of matte.cpp, with other files."""
+def compile_command(source, target, like="plugins/materials/matte.cpp"):
+    """The command that compiles a file of the page: that of a file like it, with other files."""
     with open(BUILD + "/compile_commands.json", encoding="utf-8") as f:
-        entry = next(e for e in json.load(f) if e["file"].endswith("/plugins/materials/matte.cpp"))
+        entry = next(e for e in json.load(f) if e["file"].endswith("/" + like))
     command = shlex.split(entry["command"])
     command[command.index("-o") + 1] = target
     command[command.index("-c") + 1] = source
     return command, entry["directory"]
 
 
-def link_command(target, extra_object, output):
-    """The command that links a target of the build, with one more object and another output."""
+def link_command(target, extra_objects, output):
+    """The command that links a target of the build, with more objects and another output."""
     lines = must(["ninja", "-C", BUILD, "-t", "commands", target]).stdout.splitlines()
     parts = shlex.split(lines[-1].removeprefix(": && "))
     command = parts[:parts.index("&&")] if "&&" in parts else parts
     place = command.index("-o") + 1
     command[place] = output
-    return command[:place - 1] + [extra_object] + command[place - 1:]
+    return command[:place - 1] + extra_objects + command[place - 1:]
 
 
 class AddAMaterial(unittest.TestCase):
@@ -73,7 +73,7 @@ class AddAMaterial(unittest.TestCase):
         must(command, cwd=directory)
         cls.whit = os.path.join(cls.folder, "build/release/whit")
         os.makedirs(os.path.dirname(cls.whit))
-        must(link_command("whit", cls.object, cls.whit), cwd=BUILD)
+        must(link_command("whit", [cls.object], cls.whit), cwd=BUILD)
 
     @classmethod
     def tearDownClass(cls):
@@ -133,9 +133,76 @@ class AddAMaterial(unittest.TestCase):
         if not os.path.exists(BUILD + "/tests/test_plugin"):
             self.skipTest("the tests are not built")
         program = os.path.join(self.folder, "test_plugin")
-        must(link_command("test_plugin", self.object, program), cwd=BUILD)
+        must(link_command("test_plugin", [self.object], program), cwd=BUILD)
         said = must([program, "--gtest_filter=EveryMaterial.*"], cwd=self.folder).stdout
         self.assertRegex(said, r"\[  PASSED  \] [1-9]\d* tests")
+
+
+class AddALobe(unittest.TestCase):
+    """The page's lobe, in a tree that has the repository's files but for the list of lobes."""
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.folder = scratch.name
+        os.makedirs(self.folder + "/core/lobe")
+        for name in ("core", "core/lobe"):
+            for entry in os.listdir(ROOT + "/" + name):
+                if entry not in ("lobe", "lobe_types.inc"):
+                    os.symlink("%s/%s/%s" % (ROOT, name, entry), "%s/%s/%s" % (self.folder, name, entry))
+        os.symlink(ROOT + "/.clang-format", self.folder + "/.clang-format")
+        page = blocks()
+        with open(ROOT + "/core/lobe/lobe_types.inc", encoding="utf-8") as f:
+            self.list = f.read()
+        self.line = page["lobe line: core/lobe/lobe_types.inc"]
+        self.write_list(self.list + self.line)
+        self.source = self.folder + "/core/lobe/dust.cpp"
+        self.assertFalse(os.path.exists(ROOT + "/core/lobe/dust.cpp"), "the page must describe another lobe")
+        with open(self.source, "w", encoding="utf-8") as f:
+            f.write(page["lobe file: core/lobe/dust.cpp"])
+
+    def write_list(self, text):
+        with open(self.folder + "/core/lobe/lobe_types.inc", "w", encoding="utf-8") as f:
+            f.write(text)
+
+    def compile(self, name):
+        """The object of a file of core/lobe/, and what the compiler said if there is none."""
+        target = "%s/%s.o" % (self.folder, name)
+        source = "%s/core/lobe/%s.cpp" % (self.folder, name)
+        command, directory = compile_command(source, target, "core/lobe/lambert.cpp")
+        first = next(k for k, word in enumerate(command) if word.startswith("-I"))
+        done = run(command[:first] + ["-I" + self.folder] + command[first:], cwd=directory)
+        return target, done.stdout + done.stderr
+
+    def test_it_is_formatted_and_includes_what_lobes_may(self):
+        must([sys.executable, ROOT + "/tools/check-includes", self.folder])
+        must([ROOT + "/tools/check-format", self.source])
+
+    def test_a_row_without_its_line_does_not_compile(self):
+        self.write_list(self.list)
+        self.assertIn("Dust", self.compile("dust")[1])
+
+    def test_a_line_without_its_row_does_not_link(self):
+        if not os.path.exists(BUILD + "/tests/test_lobe"):
+            self.skipTest("the tests are not built")
+        table, _ = self.compile("table")
+        done = run(link_command("test_lobe", [table], self.folder + "/test_lobe"), cwd=BUILD)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("Dust", done.stdout + done.stderr)
+
+    def test_the_generic_tests_cover_it(self):
+        if not os.path.exists(BUILD + "/tests/test_lobe"):
+            self.skipTest("the tests are not built")
+        objects = []
+        for name in ("dust", "table"):
+            target, said = self.compile(name)
+            self.assertEqual(said, "")
+            objects.append(target)
+        program = self.folder + "/test_lobe"
+        must(link_command("test_lobe", objects, program), cwd=BUILD)
+        # The names of all lobes are counted by one of the tests.
+        said = must([program, "--gtest_filter=EveryLobe.*"], cwd=self.folder).stdout
+        self.assertRegex(said, r"\[  PASSED  \] [1-9]\d* tests")
+        self.assertIn("%d lobes" % (self.list.count("\nLOBE(") + 1), said)
 
 
 if __name__ == "__main__":
