@@ -105,6 +105,48 @@ WorldEnd
 )";
 }
 
+/// A closed room with a lamp below the ceiling, a bumpy ball of plastic and a block: light comes by way of the walls.
+std::string path_scene() {
+  const auto quad = [](const char* material, const char* corners) {
+    return fmt::format("Material {}\nShape \"trianglemesh\" \"integer indices\" [0 1 2 0 2 3] \"point P\" [{}]\n",
+                       material, corners);
+  };
+  const char* const white = "\"matte\" \"rgb Kd\" [0.73 0.73 0.73]";
+  return R"(
+Film "image" "integer xresolution" 400 "integer yresolution" 400 "string filename" "bench.exr"
+Sampler "halton" "integer pixelsamples" 8
+Integrator "path" "integer maxdepth" 5
+LookAt 0 -3.6 1.6  0 0 1.3  0 0 1
+Camera "perspective" "float fov" 60
+WorldBegin
+AttributeBegin
+  Material "matte" "rgb Kd" [0 0 0]
+  AreaLightSource "diffuse" "rgb L" [17 14 11]
+  Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point P" [-0.6 -0.6 3.98  0.6 -0.6 3.98  0.6 0.6 3.98  -0.6 0.6 3.98]
+AttributeEnd
+)" + quad(white, "-2 -4 0  2 -4 0  2 2 0  -2 2 0") +
+         quad(white, "-2 -4 4  2 -4 4  2 2 4  -2 2 4") + quad(white, "-2 2 0  2 2 0  2 2 4  -2 2 4") +
+         quad(white, "-2 -4 0  2 -4 0  2 -4 4  -2 -4 4") +
+         quad("\"matte\" \"rgb Kd\" [0.65 0.05 0.05]", "-2 -4 0  -2 2 0  -2 2 4  -2 -4 4") +
+         quad("\"matte\" \"rgb Kd\" [0.12 0.45 0.15]", "2 -4 0  2 2 0  2 2 4  2 -4 4") +
+         R"(
+AttributeBegin
+  Material "matte" "rgb Kd" [0.6 0.6 0.6]
+  Translate -0.9 0.9 0
+  Rotate 20 0 0 1
+  Scale 0.5 0.5 2.2
+  Shape "trianglemesh"
+    "integer indices" [0 2 3  0 3 1   4 5 7  4 7 6   0 1 5  0 5 4   2 6 7  2 7 3   1 3 7  1 7 5   0 4 6  0 6 2]
+    "point P" [-1 -1 0  1 -1 0  -1 1 0  1 1 0  -1 -1 1  1 -1 1  -1 1 1  1 1 1]
+AttributeEnd
+AttributeBegin
+  Material "plastic" "rgb Kd" [0.2 0.25 0.5] "rgb Ks" [0.3 0.3 0.3] "float roughness" 0.1
+  Translate 0.7 -0.3 0.9
+  Scale 0.8 0.8 0.8
+)" + bumpy_ball(224) +
+         "AttributeEnd\nWorldEnd\n";
+}
+
 /// Writes the floor's texture: 1024 x 1024 texels of tiles with a little noise, display-encoded as textures are.
 void write_tiles(const std::string& path) {
   constexpr int kSize = 1024, kTile = 64;
@@ -228,7 +270,8 @@ std::vector<BenchScene> bench_scenes() {
       {"instances", "ten thousand instances of 10,080 triangles, a sky and an area light",
        [](const auto&) { return instances_scene(); }},
       {"materials", "three hundred materials of ten kinds in one view", [](const auto&) { return materials_scene(); }},
-      {"hair", "twenty thousand hairs", [](const auto&) { return hair_scene(); }}};
+      {"hair", "twenty thousand hairs", [](const auto&) { return hair_scene(); }},
+      {"path", "a closed room with 99,468 triangles, path at depth 5", [](const auto&) { return path_scene(); }}};
 }
 
 }  // namespace whit
