@@ -22,7 +22,7 @@ LobeFrame make_frame(const ShadingBatch& s);
 enum class LobeKinds : uint8_t { All, NonSpecular, Specular };
 
 /// out f = sum of the non-specular lobes f(wo, wi) |wi . ns|, per steradian, for s.n directions wi. If `pdf` is not
-/// null: the density (solid angle) with which sample_lobes() of the same kinds chooses wi (with All: including the
+/// null: the density (solid angle) with which sample_lobes() of the same kinds, never Specular, chooses wi (with All: including the
 /// probability that no specular lobe was chosen instead).
 void eval_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& frame, const Vec3Lanes& wi,
                 const RGBLanes& f, float* pdf = nullptr, LobeKinds kinds = LobeKinds::NonSpecular);

@@ -85,9 +85,13 @@ void sample_lobes(const LobeSet& set, const ShadingBatch& s, const LobeFrame& fr
   };
   for_lanes(s.n, [&](int i) { out.wi.set(i, {0, 0, 0}); });
   if (out.eta2) for_lanes(s.n, [&](int i) { out.eta2[i] = 1; });
-  draw_all(false, [](int) {});
-  eval_with_shares(set, s, frame, out.wi, shares, out.weight, out.pdf);
-  weigh(s, out);
+  if (kinds == LobeKinds::Specular) {
+    for_lanes(s.n, [&](int i) { out.wi.set(i, -s.wo[i]), out.weight.set(i, RGB(0.0f)), out.pdf[i] = 0; });
+  } else {
+    draw_all(false, [](int) {});
+    eval_with_shares(set, s, frame, out.wi, shares, out.weight, out.pdf);
+    weigh(s, out);
+  }
   draw_all(true, [&](int k) { weigh_specular(s, chosen, k, shares.of[k], out); });
 }
 

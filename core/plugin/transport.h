@@ -8,6 +8,7 @@
 // Arrays live until the batch is done, but for those made between two lights of lights(): these live until the next.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -162,6 +163,14 @@ class Transport {
   virtual const float* draw_1d(const Points& points, int dimension) = 0;
   virtual Uniform2 draw_2d(const Points& points, int dimension) = 0;
 };
+
+/// A direction without end from every point, towards no light of the scene, for Transport::visible().
+inline DirectSamples directions(const Points& points, const Vec3Lanes& wi, Arena& arena) {
+  DirectSamples s;
+  s.n = points.n, s.wi = wi, s.distance = arena.floats(points.n);
+  std::fill_n(s.distance, points.n, std::numeric_limits<float>::infinity());
+  return s;
+}
 
 /// for (int light : lights(t, points)): the numbers of the lights that may reach one of the points.
 class LightRange {

@@ -120,7 +120,9 @@ Diagnostics find_surprises(const SceneDescription& description, const EffectPlan
     all.warning(description.first_medium(), "participating media are not simulated", "the picture is made without");
   }
   const EffectSet lights{Effect::AreaLights, Effect::EnvironmentLights, Effect::DeltaLights};
-  if ((plan.called_for & lights).empty()) {
+  // An integrator that knows of no lights does without.
+  const bool lit_otherwise = (lights - (plan.off - plan.off_by_hand)).empty();
+  if ((plan.called_for & lights).empty() && !lit_otherwise) {
     all.warning(description.world_begin, "the scene has no lights, so the picture is black",
                 "add a LightSource, or an AreaLightSource before a shape that stands in the world");
   }

@@ -1,8 +1,6 @@
 // Ambient occlusion: how much of the hemisphere over a point is free, weighted by the cosine.
 // Source: Zhukov, Iones and Kronin, An Ambient Light Illumination Model, 1998; pbrt-v3's "ambientocclusion".
 
-#include <limits>
-
 #include "core/base/fastmath.h"
 #include "core/base/sampling.h"
 #include "core/plugin/integrator.h"
@@ -30,15 +28,14 @@ struct AmbientOcclusion final : Integrator {
     const Uniform2 first = t.draw_2d(points, 0);
     for (int k = 0; k < nsamples; ++k) {
       const ArenaScope scratch(t.arena());
-      DirectSamples over;
-      over.n = points.n, over.wi = t.arena().vec3(points.n), over.distance = t.arena().floats(points.n);
-      const RGBLanes weight = aim(points, first, k, over, t.arena());
+      const DirectSamples over = directions(points, t.arena().vec3(points.n), t.arena());
+      const RGBLanes weight = aim(points, first, k, over.wi, t.arena());
       t.add(points, over, t.visible(points, over, weight));
     }
   }
 
   /// The k-th direction over each point, on the side that its ray came from, and its share of pi.
-  RGBLanes aim(const Points& points, const Uniform2& first, int k, const DirectSamples& out, Arena& arena) const {
+  RGBLanes aim(const Points& points, const Uniform2& first, int k, const Vec3Lanes& wi, Arena& arena) const {
     const RGBLanes weight = arena.rgb(points.n);
     const float share = 1 / static_cast<float>(nsamples);
     for_lanes(points.n, [&](int i) {
@@ -46,8 +43,7 @@ struct AmbientOcclusion final : Integrator {
       const Vec3f w = cossample ? cosine_hemisphere(u.x, u.y) : uniform_hemisphere(u.x, u.y);
       const Vec3f ng = points.at.ng[i], n = ng * (dot(ng, points.at.wo[i]) < 0 ? -1.0f : 1.0f);
       const Frame frame = coordinate_system(n);
-      out.wi.set(i, normalize(frame.s * w.x + frame.t * w.y + n * w.z));
-      out.distance[i] = std::numeric_limits<float>::infinity();
+      wi.set(i, normalize(frame.s * w.x + frame.t * w.y + n * w.z));
       weight.set(i, RGB(share * (cossample ? kPi : 2 * kPi * w.z)));
     });
     return weight;

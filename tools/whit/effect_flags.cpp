@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "core/plugin/registry.h"
+
 namespace whit {
 
 void add_effect_flags(CommandLine& command, EffectFlags& flags) {
+  command.flags.push_back(
+      {"--integrator", &flags.integrator, "Instead of the scene's: whitted, path ... ('whit help integrator')"});
   command.flags.push_back(
       {"--without", &flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')"});
   command.flags.push_back(
@@ -19,7 +23,17 @@ std::string usage_problem(const EffectFlags& flags) {
     return fmt::format("{}: there is no effect \"{}\"; {}", flag, unknown,
                        hint.empty() ? fmt::format("there are {}", fmt::join(effect_names(), ", ")) : hint);
   }
+  if (!flags.integrator.empty() && !find_plugin("integrator", flags.integrator)) {
+    const std::vector<std::string> names = plugin_names("integrator");
+    const std::string hint = did_you_mean(flags.integrator, names);
+    return fmt::format("--integrator: there is no integrator \"{}\"; {}", flags.integrator,
+                       hint.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : hint);
+  }
   return {};
+}
+
+void choose_integrator(const EffectFlags& flags, ParsedFile& file) {
+  if (!flags.integrator.empty()) use_integrator(file, flags.integrator);
 }
 
 PlanOptions plan_options(const EffectFlags& flags) {

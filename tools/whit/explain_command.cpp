@@ -166,7 +166,8 @@ int explain_command(const Arguments& args) {
     say("whit explain: " + problem);
     return kUsage;
   }
-  const ParsedFile file = read_scene(path);
+  ParsedFile file = read_scene(path);
+  choose_integrator(flags, file);
   const Sources& sources = *file.sources;
   Diagnostics all = file.said;
   std::vector<PlannedWorld> worlds;

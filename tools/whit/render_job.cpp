@@ -27,6 +27,7 @@ class RenderJob {
       : settings_(settings), path_(std::move(path)), file_(read_scene(path_)), parsed_memory_(resident_memory()) {}
 
   int run() {
+    choose_integrator(settings_.effects, file_);
     times_.parse = file_.seconds;
     // A file with mistakes is reported whole: also what planning would have said of it.
     reported_whole_ = file_.said.has_errors();
@@ -226,7 +227,7 @@ class RenderJob {
 
   const RenderSettings& settings_;
   const std::string path_;
-  const ParsedFile file_;
+  ParsedFile file_;
   const Sources& sources_ = *file_.sources;
   const double parsed_memory_;  ///< Resident after parsing, in bytes.
   StepTimes times_;
