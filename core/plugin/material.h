@@ -22,6 +22,9 @@ class Material : public Plugin {
   EffectSet effects() const final;
   std::vector<const Plugin*> textures_read() const final;
 
+  /// True where pbrt-v3 lets light into the body below the surface, when paths are followed: shown is the surface alone.
+  virtual bool scatters_below() const { return false; }
+
   /// True for a material that is not there (pbrt's "none"): rays pass on unchanged and nothing is shaded.
   virtual bool is_interface() const { return false; }
 };

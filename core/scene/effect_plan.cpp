@@ -1,5 +1,6 @@
 #include "core/scene/effect_plan.h"
 
+#include <optional>
 #include <utility>
 
 namespace whit {
@@ -130,6 +131,7 @@ class Planner {
     // Where a statement is wrong and --keep-going goes on, the default material is shown.
     if (!material.plugin && m > 0) visit_worn(0, shape);
     visit_material(index, shape);
+    if (material.plugin && material.plugin->scatters_below() && !body_) body_ = m == 0 ? shape : material.where;
     // Normals of a surface without lobes are never asked for.
     if (!material.plugin || material.plugin->bump.is_constant() || material.plugin->effects().empty()) return;
     call_for({Effect::Bump}, m == 0 ? shape : material.where, "bumpmap");
@@ -216,6 +218,10 @@ class Planner {
   void note_ignored() {
     const SceneDescription& d = description_;
     if (d.has_media()) plan_.ignored.push_back({"participating media", d.first_medium()});
+    const bool follows_paths = scene_.integrator.plugin && scene_.integrator.plugin->simulates().has(Effect::Indirect);
+    if (body_ && follows_paths) {
+      plan_.ignored.push_back({"scattering below surfaces", *body_, "the surface alone is shown"});
+    }
     if (scene_.integrator.replaced) {
       plan_.ignored.push_back({"integrator \"" + d.integrator.plugin + '"', d.integrator.where});
     }
@@ -228,6 +234,7 @@ class Planner {
   std::vector<const Entity*> emitters_;
   std::vector<int> named_light_;  ///< Whether an area light has called for the effect.
   std::vector<uint8_t> worn_;     ///< Materials that a shape wears, not only a mix.
+  std::optional<SourcePos> body_;  ///< The first material that scatters below its surface.
   bool scatters_ = false;
   bool shades_ = true;  ///< The integrator asks for lobes.
 };

@@ -28,6 +28,9 @@ struct EffectUse {
 struct Ignored {
   std::string what;  ///< "participating media".
   SourcePos where;   ///< The first statement that asks for it.
+  /// What is shown instead, where the picture looks otherwise than one might expect; "" where it hardly does, or where
+  /// that has been said.
+  std::string instead{};
 };
 
 struct PlanOptions {

@@ -119,6 +119,9 @@ Diagnostics find_surprises(const SceneDescription& description, const EffectPlan
   if (description.has_media()) {
     all.warning(description.first_medium(), "participating media are not simulated", "the picture is made without");
   }
+  for (const Ignored& ignored : plan.ignored) {
+    if (!ignored.instead.empty()) all.warning(ignored.where, ignored.what + " is not simulated", ignored.instead);
+  }
   const EffectSet lights{Effect::AreaLights, Effect::EnvironmentLights, Effect::DeltaLights};
   // An integrator that knows of no lights does without.
   const bool lit_otherwise = (lights - (plan.off - plan.off_by_hand)).empty();

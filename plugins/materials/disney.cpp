@@ -27,6 +27,10 @@ struct Disney : Material {
   Tex<float> spectrans, flatness, difftrans;
   bool thin = false;
 
+  bool scatters_below() const override {
+    return !thin && !(scatterdistance.is_constant() && is_black(scatterdistance.value()));
+  }
+
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     const Shared at = shared(s);
     if (may_be_diffuse() && !all_zero(at.diffuse, s.n)) add_diffuse(s, at, out);

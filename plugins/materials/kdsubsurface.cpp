@@ -12,6 +12,8 @@ struct KdSubsurface : DielectricSurface {
   Tex<RGB> Kd, mfp;
   float eta = 0, scale = 0, g = 0;
 
+  bool scatters_below() const override { return true; }
+
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (!is_nothing()) add_surface(s, filled(s, eta), out);
   }

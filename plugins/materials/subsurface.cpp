@@ -71,6 +71,8 @@ struct Subsurface : DielectricSurface {
     diagnostics.warning(statement, "no medium is called \"" + name + '"', did_you_mean(name, kMedia));
   }
 
+  bool scatters_below() const override { return true; }
+
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (!is_nothing()) add_surface(s, filled(s, eta), out);
   }

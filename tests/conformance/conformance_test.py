@@ -27,46 +27,49 @@ def load(name, path):
     return module
 
 
-def read_json(name):
-    with open(os.path.join(HERE, name), encoding="utf-8") as f:
-        return json.load(f)
+def scene_file(name, folder=HERE):
+    return os.path.join(folder, "scenes", name + ".pbrt")
 
 
-def scene_file(name):
-    return os.path.join(HERE, "scenes", name + ".pbrt")
-
-
-def check(names):
+def check(folder, names):
     """What `whit check` has to say against each scene; nothing for those of which it knows everything."""
-    done = subprocess.run([WHIT, "check", *map(scene_file, names)], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    files = {n: scene_file(n, folder) for n in names}
+    done = subprocess.run([WHIT, "check", *files.values()], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=60, check=False)
     if done.returncode not in (0, 1):
         raise AssertionError("whit check: exit %d\n%s" % (done.returncode, done.stderr))
-    said = {n: [line for line in done.stderr.splitlines() if line.startswith(scene_file(n) + ":")] for n in names}
+    said = {n: [line for line in done.stderr.splitlines() if line.startswith(files[n] + ":")] for n in names}
     if sum(map(len, said.values())) != len([line for line in done.stderr.splitlines() if re.search("(error|warning): ", line)]):
         raise AssertionError("whit check names no file:\n" + done.stderr)
-    return {n: "check: " + lines[0][len(scene_file(n)) + 1:] for n, lines in said.items() if lines}
+    return {n: "check: " + lines[0][len(files[n]) + 1:] for n, lines in said.items() if lines}
 
 
 @unittest.skipUnless(WHIT, "the program is not built")
 class Conformance(unittest.TestCase):
-    def test_scenes(self):
+    def test_whitted(self):
+        self.pass_in(HERE, 133)
+
+    def test_other_integrators(self):
+        self.pass_in(HERE + "-paths", 37)
+
+    def pass_in(self, folder, count):
         try:
             compare = load("compare", os.path.join(HERE, "compare.py"))
         except ImportError as e:
             self.fail("python3-numpy and python3-openimageio are needed (tools/install-deps test): %s" % e)
         tool = load("conformance_tool", TOOL)
-        limits = {s["name"]: s["limits"] for s in read_json("manifest.json")["scenes"]}
-        self.assertEqual(len(limits), 133)
-        unknown = check(limits)
+        with open(os.path.join(folder, "manifest.json"), encoding="utf-8") as f:
+            limits = {s["name"]: s["limits"] for s in json.load(f)["scenes"]}
+        self.assertEqual(len(limits), count)
+        unknown = check(folder, limits)
 
         with tempfile.TemporaryDirectory() as out:
             def judge(name):
                 """Why a scene does not pass; nothing when it does."""
                 if name in unknown:
                     return [unknown[name]]
-                picture, reference = os.path.join(out, name + ".exr"), os.path.join(HERE, "ref", name + ".exr")
-                ours = tool.check_scene(WHIT, scene_file(name), reference, picture, limits[name])
+                picture, reference = os.path.join(out, name + ".exr"), os.path.join(folder, "ref", name + ".exr")
+                ours = tool.check_scene(WHIT, scene_file(name, folder), reference, picture, limits[name])
                 theirs = compare.compare_file(reference, picture, limits[name])
                 return ["%s: %s" % (who, ", ".join(r["why"]))
                         for who, r in (("whit diff", ours), ("compare.py", theirs)) if r["status"] != "ok"]

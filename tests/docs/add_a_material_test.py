@@ -5,56 +5,18 @@ the pixels the page derives, and the generic tests of materials pass with it. So
 The plugin is compiled in a temporary folder with the flags of the other plugins and linked with the objects of the
 build, so that neither the source tree nor the build changes; so is the lobe. $WHIT_BINARY_DIR is the build.
 """
-import json
 import os
 import re
 import shlex
-import subprocess
 import sys
 import tempfile
 import unittest
 
-ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
-BUILD = os.environ.get("WHIT_BINARY_DIR", ROOT + "/build/release")
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from page_plugin import BUILD, ROOT, blocks_of, compile_command, link_command, must, run  # pylint: disable=wrong-import-position
+
 PAGE = ROOT + "/docs/add-a-material.md"
 PLUGIN = "plugins/materials/paper.cpp"
-
-
-def blocks():
-    """The fenced blocks that a comment marks, as {mark: text}."""
-    with open(PAGE, encoding="utf-8") as f:
-        return dict(re.findall(r"^<!-- (.*?) -->\n```\w*\n(.*?)^```$", f.read(), re.DOTALL | re.MULTILINE))
-
-
-def run(command, **options):
-    return subprocess.run(command, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL, **options)
-
-
-def must(command, **options):
-    done = run(command, **options)
-    if done.returncode != 0:
-        raise AssertionError("%s\nexit %d\n%s%s" % (" ".join(command)[:500], done.returncode, done.stdout, done.stderr))
-    return done
-
-
-def compile_command(source, target, like="plugins/materials/matte.cpp"):
-    """The command that compiles a file of the page: that of a file like it, with other files."""
-    with open(BUILD + "/compile_commands.json", encoding="utf-8") as f:
-        entry = next(e for e in json.load(f) if e["file"].endswith("/" + like))
-    command = shlex.split(entry["command"])
-    command[command.index("-o") + 1] = target
-    command[command.index("-c") + 1] = source
-    return command, entry["directory"]
-
-
-def link_command(target, extra_objects, output):
-    """The command that links a target of the build, with more objects and another output."""
-    lines = must(["ninja", "-C", BUILD, "-t", "commands", target]).stdout.splitlines()
-    parts = shlex.split(lines[-1].removeprefix(": && "))
-    command = parts[:parts.index("&&")] if "&&" in parts else parts
-    place = command.index("-o") + 1
-    command[place] = output
-    return command[:place - 1] + extra_objects + command[place - 1:]
 
 
 class AddAMaterial(unittest.TestCase):
@@ -62,7 +24,7 @@ class AddAMaterial(unittest.TestCase):
     def setUpClass(cls):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.folder = cls.scratch.name
-        cls.blocks = blocks()
+        cls.blocks = blocks_of(PAGE)
         os.makedirs(os.path.dirname(os.path.join(cls.folder, PLUGIN)))
         for mark, text in cls.blocks.items():
             if mark.startswith("file: "):

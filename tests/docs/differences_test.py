@@ -374,8 +374,14 @@ class Differences(unittest.TestCase):
                     said="1 degenerate triangle (no area, or repeated)")
 
     def test_other_integrators(self):
-        self.render('Integrator "path"\n' + scene('LightSource "point"'), said="the picture is made with whitted")
+        self.render('Integrator "bdpt"\n' + scene('LightSource "point"'), said="the picture is made with path")
+        self.render('Integrator "nosuch"\n' + scene('LightSource "point"'), said="the picture is made with whitted")
         self.render(scene('LightSource "point"'))
+
+    def test_subsurface(self):
+        body = 'LightSource "point" Material "subsurface" Translate 0 0 5 Shape "sphere"'
+        self.render('Integrator "path"\n' + scene(body), said="scattering below surfaces is not simulated")
+        self.render(scene(body))
 
     def test_other_samplers(self):
         self.render(scene('LightSource "point"').replace("halton", "nosuchsampler"), said="halton is used instead")
