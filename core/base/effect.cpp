@@ -35,7 +35,7 @@ constexpr EffectInfo kInfos[] = {
     {"instancing", "objects that are placed", "no placed objects", "points taken to render space and back", "", 0, 4},
     {"interfaces", "surfaces without a material", "none of these surfaces", "rays sent on behind them", "", 0, 0},
     {"indirect", "light by way of other surfaces that scatter", "direct light alone",
-     "rays sampled from lobes, traced in another round", "4 per bounce", 52, 32},
+     "rays sampled from lobes, traced in another round", "7 per bounce", 64, 32},
 };
 static_assert(std::size(kInfos) == kEffects);
 

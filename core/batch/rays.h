@@ -32,13 +32,14 @@ struct Rays {
   uint32_t* stream = nullptr;  ///< Branch of the ray tree, for the sampler.
   float* time = nullptr;       ///< In [0,1] over the transform times.
   float* pdf = nullptr;        ///< With which d was sampled, per solid angle; infinite for a camera or a mirror.
+  Vec3Lanes from;              ///< The surface point it left, which o is a little above: where d was sampled.
   float* eta2 = nullptr;       ///< By how much refraction has scaled the radiance: pbrt's etaScale.
   int32_t* via = nullptr;      ///< How the sample left its first surface (core/plugin/transport.h), for AOVs.
   RayDifferentials differentials;
 
   static constexpr auto fields() {
     return std::tuple(&Rays::o, &Rays::d, &Rays::throughput, &Rays::slot, &Rays::stream, &Rays::time, &Rays::pdf,
-                      &Rays::eta2, &Rays::via, &Rays::differentials);
+                      &Rays::from, &Rays::eta2, &Rays::via, &Rays::differentials);
   }
 };
 

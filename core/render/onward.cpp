@@ -113,6 +113,7 @@ void fill_rays(const Points& points, const Onward& onward, const Senders& sender
   constexpr float kSpecular = std::numeric_limits<float>::infinity();
   if (out.time) for_lanes(senders.n, [&](int k) { out.time[to[k]] = in.time[point[k]]; });
   if (out.pdf) for_lanes(senders.n, [&](int k) { out.pdf[to[k]] = onward.pdf ? onward.pdf[point[k]] : kSpecular; });
+  if (out.from) for_lanes(senders.n, [&](int k) { out.from.set(to[k], at.p[point[k]]); });
   if (out.eta2) {
     for_lanes(senders.n,
               [&](int k) { out.eta2[to[k]] = in.eta2[point[k]] * (onward.eta2 ? onward.eta2[point[k]] : 1.0f); });
@@ -125,6 +126,23 @@ void fill_rays(const Points& points, const Onward& onward, const Senders& sender
     out.differentials.rx_o.set(ray, from.rx_o[i]), out.differentials.rx_d.set(ray, from.rx_d[i]);
     out.differentials.ry_o.set(ray, from.ry_o[i]), out.differentials.ry_d.set(ray, from.ry_d[i]);
   });
+}
+
+/// Counts rays by what they are; of sampled ones a specular lobe's ray is a mirrored one on the side of wo.
+void count_sent(const Points& points, const Onward& onward, const Senders& senders, RenderStatistics& statistics) {
+  if (onward.kind == Onward::Kind::Mirrored) statistics.reflection_rays += senders.n;
+  if (onward.kind == Onward::Kind::Refracted) statistics.refraction_rays += senders.n;
+  if (onward.kind != Onward::Kind::Sampled) return;
+  const ShadingBatch& at = points.at;
+  int mirrored = 0, refracted = 0;
+  for (int k = 0; k < senders.n; ++k) {
+    const int i = senders.point[k];
+    if (onward.pdf[i] < std::numeric_limits<float>::infinity()) continue;
+    const bool back = dot(onward.wi[i], at.ng[i]) * dot(at.wo[i], at.ng[i]) > 0;
+    mirrored += back, refracted += !back;
+  }
+  statistics.reflection_rays += mirrored, statistics.refraction_rays += refracted;
+  statistics.indirect_rays += senders.n - mirrored - refracted;
 }
 
 }  // namespace
@@ -206,7 +224,7 @@ Rays Tracer::rays(const Points& points, const Onward& onward) {
   const SenderPair senders = find_senders(points, onward, {}, arena_);
   Rays like = points.rays;
   if (!onward.differentials) like.differentials = {};
-  if (onward.pdf) like.pdf = onward.pdf;
+  if (onward.pdf) like.pdf = onward.pdf, like.from = points.at.p;
   Rays out = allocate_like(like, senders.total, arena_);
   out.n = senders.total, out.depth = points.rays.depth + 1;
   fill_rays(points, onward, senders.first, out);
@@ -220,8 +238,8 @@ void Tracer::send(const Points& points, const Onward& onward, const Onward& also
   const Rays out = worker_.level(points.rays.depth + 1).append(senders.total);
   fill_rays(points, onward, senders.first, out);
   if (also) fill_rays(points, also, senders.second, out);
-  worker_.statistics.count(onward.kind, senders.first.n);
-  worker_.statistics.count(also.kind, senders.second.n);
+  count_sent(points, onward, senders.first, worker_.statistics);
+  count_sent(points, also, senders.second, worker_.statistics);
 }
 
 }  // namespace whit

@@ -8,7 +8,7 @@ RayQueue::RayQueue(int depth, const CarriedByRays& carried) {
   Rays like = with_all_fields<Rays>();
   if (!carried.differentials) like.differentials = {};
   if (!carried.time) like.time = nullptr;
-  if (!carried.densities) like.pdf = nullptr;
+  if (!carried.densities) like.pdf = nullptr, like.from = {};
   if (!carried.eta2) like.eta2 = nullptr;
   if (!carried.via) like.via = nullptr;
   like.depth = depth;

@@ -12,7 +12,7 @@ namespace whit {
 struct CarriedByRays {
   bool differentials = false;
   bool time = false;
-  bool densities = false;  ///< Rays::pdf.
+  bool densities = false;  ///< Rays::pdf and from.
   bool eta2 = false;
   bool via = false;
 };

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "core/base/fastmath.h"
 #include "core/batch/gather.h"
 #include "core/render/tracer.h"
 
@@ -31,7 +32,7 @@ Seen Tracer::escaped(const Rays& rays, const Hits& hits, Heuristic heuristic) {
     for_lanes(n, [&](int i) { one.set(i, RGB(0.0f)); });
     e.light->add_escaped(n, o, d, one, pdf);
     for (int i = 0; i < n; ++i) {
-      const float chosen = e.number < 0 ? 0.0f : expected_samples(e.number, o[i]);
+      const float chosen = e.number < 0 ? 0.0f : expected_samples(e.number, rays.from[lanes[i]]);
       const float weight = heuristic(rays.pdf[lanes[i]], chosen * pdf[i]);
       seen.radiance.set(i, seen.radiance[i] + one[i] * weight);
     }
@@ -59,11 +60,14 @@ Seen Tracer::emitted(const Points& points, Heuristic heuristic) {
     const SceneShape& shape = shape_of(i);
     const auto prim = shape.mesh && shape.first_light >= 0 ? static_cast<int>(points.hits.prim[i]) : 0;
     const Light& light = *scene_.emitters[static_cast<size_t>(shape.emitter + prim)];
-    const LightHit hit{points.rays.o[i], points.rays.d[i], points.hits.t[i], points.at.p[i], points.at.ng[i]};
+    const Vec3f p = points.at.p[i], ng = points.at.ng[i];
     numbers[k] = shape.first_light < 0 ? DirectSamples::kNone : shape.first_light + prim;
-    RGB radiance = light.emitted(hit);
+    RGB radiance = light.emitted({points.rays.o[i], points.rays.d[i], points.hits.t[i], p, ng});
     if (pdf && numbers[k] >= 0 && pdf[i] < std::numeric_limits<float>::infinity() && !is_black(radiance)) {
-      radiance = radiance * heuristic(pdf[i], expected_samples(numbers[k], hit.o) * light.pdf(hit));
+      // Where a sample of the light would have been asked for.
+      const Vec3f from = points.rays.from[i], to = p - from;
+      const LightHit hit{from, normalize(to), length(to), p, ng};
+      radiance = radiance * heuristic(pdf[i], expected_samples(numbers[k], from) * light.pdf(hit));
     }
     seen.radiance.set(k, radiance);
   }

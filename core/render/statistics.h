@@ -5,7 +5,6 @@
 
 #include "core/base/vec.h"
 #include "core/batch/stage_clock.h"
-#include "core/plugin/transport.h"
 
 namespace whit {
 
@@ -27,11 +26,6 @@ struct RenderStatistics {
 
   int64_t rays() const {
     return camera_rays + reflection_rays + refraction_rays + indirect_rays + passing_rays + shadow_rays + probe_rays;
-  }
-  void count(Onward::Kind kind, int64_t rays) {
-    (kind == Onward::Kind::Mirrored    ? reflection_rays
-     : kind == Onward::Kind::Refracted ? refraction_rays
-                                       : indirect_rays) += rays;
   }
   void add(const RenderStatistics& o);
   void note_invalid(Vec2i pixel, uint32_t sample);

@@ -149,6 +149,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   });
   if (rays.time) std::copy_n(c.time, n, rays.time);
   if (rays.pdf) std::fill_n(rays.pdf, n, std::numeric_limits<float>::infinity());
+  if (rays.from) for_lanes(n, [&](int i) { rays.from.set(i, rays.o[i]); });
   if (rays.eta2) std::fill_n(rays.eta2, n, 1.0f);
   if (rays.via) std::fill_n(rays.via, n, static_cast<int32_t>(Via::Camera));
   worker.statistics.camera_samples += n;

@@ -232,8 +232,8 @@ class Planner {
   EffectPlan plan_;
   EffectSet forgone_;  ///< Called for, but without consequence.
   std::vector<const Entity*> emitters_;
-  std::vector<int> named_light_;  ///< Whether an area light has called for the effect.
-  std::vector<uint8_t> worn_;     ///< Materials that a shape wears, not only a mix.
+  std::vector<int> named_light_;   ///< Whether an area light has called for the effect.
+  std::vector<uint8_t> worn_;      ///< Materials that a shape wears, not only a mix.
   std::optional<SourcePos> body_;  ///< The first material that scatters below its surface.
   bool scatters_ = false;
   bool shades_ = true;  ///< The integrator asks for lobes.

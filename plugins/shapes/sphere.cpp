@@ -74,6 +74,8 @@ struct Sphere final : AnalyticShape {
   double density_from(const Vec3d& ref, const Vec3d& p) const override {
     const Cone cone(*this, ref);
     if (!whole_ || cone.stretch > kNearlyRound) return AnalyticShape::density_from(ref, p);
+    // A point of the sphere's own inside may be outside of it by rounding: it then finds the near side in all directions
+    // in which it should find the far one, and has the same light by the same density.
     return cone.is_outside() ? cone.pdf() : 1 / (4 * kPiD);
   }
 
@@ -112,7 +114,6 @@ struct Sphere final : AnalyticShape {
 
   static constexpr double kPole = 1e-8, kHuge = 1e300;
   static constexpr double kRound = 1e-13, kNearlyRound = 1e-2;
-  static constexpr double kRoom = 1e-6;  ///< Coordinates are off by 6e-8 of themselves, origins of rays by some more.
 
   /// The smallest cone from a point around the sphere that surrounds the placed one.
   struct Cone {
@@ -120,10 +121,8 @@ struct Sphere final : AnalyticShape {
     double radius;    ///< Of the surrounding sphere.
     double stretch;   ///< How much the placed sphere's longest radius exceeds the shortest, at most; 0 for a sphere.
     double distance;
-    double room;  ///< What rounding may have moved the point by.
 
     Cone(const Sphere& sphere, const Vec3d& ref) {
-      room = kRoom * (std::abs(ref.x) + std::abs(ref.y) + std::abs(ref.z));
       const Mat4d& m = sphere.object_to_scene();
       const Vec3d x{m[0][0], m[0][1], m[0][2]}, y{m[1][0], m[1][1], m[1][2]}, z{m[2][0], m[2][1], m[2][2]};
       // Gershgorin's circles bound the eigenvalues of M M^T, the squared stretches.
@@ -138,8 +137,7 @@ struct Sphere final : AnalyticShape {
       distance = w.length();
       w /= distance;
     }
-    /// Clearly: a point of the sphere itself is inside, also one that rounding put before it or that a ray starts from.
-    bool is_outside() const { return distance - radius > room; }
+    bool is_outside() const { return distance > radius; }
 
     double sine() const { return radius / distance; }
     /// 1 - cos of the cone's half angle.
@@ -184,10 +182,7 @@ struct Sphere final : AnalyticShape {
       const double d = std::sqrt(wx * wx + wy * wy + wz * wz), inverse = 1 / d;
       wx *= inverse, wy *= inverse, wz *= inverse;
       const double sine = r * inverse, gap = (d - r) * (d + r);
-      const double room =
-          kRoom * (std::abs(static_cast<double>(s.ref.x[i])) + std::abs(static_cast<double>(s.ref.y[i])) +
-                   std::abs(static_cast<double>(s.ref.z[i])));
-      const bool outside = d - r > room;
+      const bool outside = gap > 0;
       const double cos_max = std::sqrt(outside ? gap : 0.0) * inverse;
       const double x_max = sine * sine / (1 + cos_max);
       const double u0 = static_cast<double>(s.u[i]), x = u0 * x_max, cos_theta = 1 - x;

@@ -112,7 +112,7 @@ class AddALobe(unittest.TestCase):
                 if entry not in ("lobe", "lobe_types.inc"):
                     os.symlink("%s/%s/%s" % (ROOT, name, entry), "%s/%s/%s" % (self.folder, name, entry))
         os.symlink(ROOT + "/.clang-format", self.folder + "/.clang-format")
-        page = blocks()
+        page = blocks_of(PAGE)
         with open(ROOT + "/core/lobe/lobe_types.inc", encoding="utf-8") as f:
             self.list = f.read()
         self.line = page["lobe line: core/lobe/lobe_types.inc"]

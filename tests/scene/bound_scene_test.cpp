@@ -82,7 +82,7 @@ TEST(BoundScene, AnUnknownIntegratorIsSaidWithItsHintOnALineOfItsOwn) {
   EXPECT_EQ(remedy("mypath"), "the picture is made with whitted\ndid you mean \"path\"?");
   EXPECT_EQ(remedy("wited"), "the picture is made with whitted\ndid you mean \"whitted\"?");
   EXPECT_EQ(remedy("photonmap"), "the picture is made with whitted");
-  EXPECT_EQ(remedy("path"), "the picture is made with whitted: direct light, mirrors and refraction");
+  EXPECT_EQ(remedy("volpath"), "the picture is made with path");
   Sources sources;
   EXPECT_EQ(sources.render_diagnostic({Severity::Warning, ErrorClass::Scene, {}, "a", "b\nc"}, false),
             "warning: a\n  b\n  c\n");

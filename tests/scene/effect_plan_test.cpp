@@ -150,7 +150,7 @@ TEST(EffectPlan, EachEffectCanBeSwitchedOff) {
       Shape "trianglemesh" "integer indices" [0 1 2] "point P" [0 0 0 1 0 0 0 1 0] "float shadowalpha" 0
       AreaLightSource "diffuse" Shape "disk"
       ActiveTransform EndTime Translate 1 0 0 ActiveTransform All AreaLightSource "" Shape "disk")",
-                                "Camera \"perspective\" \"float lensradius\" 0.1\n");
+                                "Integrator \"path\"\nCamera \"perspective\" \"float lensradius\" 0.1\n");
   EXPECT_EQ(Planned(all).plan.needed, EffectSet::all());
   for_effects(EffectSet::all(), [&](Effect e) {
     const EffectPlan plan = Planned(all, Planned::Warnings::Failures, {.off = {e}}).plan;
@@ -366,8 +366,8 @@ TEST(EffectPlan, WhatIsNotSimulatedIsNamed) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(ignored(scene("MakeNamedMedium \"fog\" \"string type\" \"homogeneous\"\nMediumInterface \"fog\" \"\"")),
             Names{"participating media at test.pbrt:3:1"});
-  EXPECT_EQ(ignored(scene("", "Integrator \"path\"\nAccelerator \"kdtree\"\n")),
-            Names{"integrator \"path\" at test.pbrt:1:1"});  // the accelerator has no part in the picture
+  EXPECT_EQ(ignored(scene("", "Integrator \"bdpt\"\nAccelerator \"kdtree\"\n")),
+            Names{"integrator \"bdpt\" at test.pbrt:1:1"});  // the accelerator has no part in the picture
 }
 
 }  // namespace
