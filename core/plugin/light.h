@@ -1,6 +1,8 @@
 // Lights: batches of points ask a light for directions, radiance and densities; escaped rays ask for radiance.
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -34,6 +36,13 @@ struct LightHit {
 
 /// How a light is chosen where only one is sampled for each point.
 enum class LightStrategy : uint8_t { Spatial, Uniform, Power };
+
+/// How much a colour counts where light is shared out: its luminance, in double because floats could overflow; of
+/// magnitudes, because colours out of gamut have negative parts.
+inline double strength_of(const RGB& c) {
+  const auto part = [](float x) { return std::abs(static_cast<double>(x)); };
+  return 0.212671 * part(c.x) + 0.715160 * part(c.y) + 0.072169 * part(c.z);
+}
 
 class Light : public Plugin {
  public:
@@ -72,6 +81,10 @@ class Light : public Plugin {
   virtual LightReach reach() const { return {}; }
   /// The point of render space from which all its light comes, if there is one. Asked after prepare().
   virtual std::optional<Vec3d> position() const { return {}; }
+  /// About how much light it sends into a scene of that radius, as pbrt-v3 has it: the luminance of radiance times solid
+  /// angle times area, lengths as in render space. Asked after prepare(), and only where lights are chosen by it; may
+  /// read pictures.
+  virtual double power(double scene_radius) const = 0;
   /// True when the light gives nothing anywhere (power 0), so that the plan drops it.
   virtual bool is_black() const { return false; }
 };

@@ -149,6 +149,17 @@ void AnalyticShape::place(const Mat4d& object_to_scene, bool reverse_orientation
   flips_ = reverse_orientation != swaps_handedness(object_to_scene);
 }
 
+/// The object's area times how much areas grow, on average over samples of it.
+double AnalyticShape::placed_area() const {
+  constexpr int kSide = 8;
+  double area = 0;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const ShapeSample s = sample_area((i % kSide + 0.5) / kSide, (i / kSide + 0.5) / kSide);
+    area += transform_area(object_to_scene_, s.n.normalized()).length() / (s.pdf * kSide * kSide);
+  }
+  return area;
+}
+
 ShapeSample AnalyticShape::sample_from(const Vec3d& ref, double u0, double u1) const {
   const ShapeSample object = sample_area(u0, u1);
   ShapeSample s;

@@ -162,6 +162,9 @@ class AnalyticShape : public Shape {
   /// outward object-space normal direction dpdu x dpdv (before flips) as n, and pdf = 1 / object area.
   virtual ShapeSample sample_area(double u0, double u1) const = 0;
 
+  /// The area of the placed shape: exact of planar shapes and where the placement stretches all ways alike, else about.
+  double placed_area() const;
+
   /// A point on the shape as seen from `ref`, all in scene space (see place()), for u in [0,1)^2; pdf with
   /// respect to solid angle at ref, 0 when the sample is useless. The default samples by area, with the
   /// exact Jacobian of the placement; the sphere samples its cone.

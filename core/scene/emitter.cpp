@@ -78,8 +78,13 @@ class Emitter : public Light {
   float pdf(const LightHit&) const override { return 0; }
   bool is_two_sided() const override { return emission_.two_sided; }
   int sample_count() const override { return emission_.samples; }
+  double power(double) const override { return 0; }
 
  protected:
+  double power_of_area(double area) const {
+    return detail::kPiD * (emission_.two_sided ? 2 : 1) * area * strength_of(emission_.radiance);
+  }
+
   const SceneShape shape_;
   const Emission emission_;
 };
@@ -91,6 +96,7 @@ class TriangleEmitter final : public Emitter {
   void sample(const LightSamples& samples) const override;
   float pdf(const LightHit& hit) const override;
   LightReach reach() const override;
+  double power(double scene_radius) const override;
 
  private:
   const uint32_t* indices() const { return &shape_.mesh->indices[3 * static_cast<size_t>(prim_)]; }
@@ -103,6 +109,7 @@ class AnalyticEmitter final : public Emitter {
   void sample(const LightSamples& samples) const override;
   float pdf(const LightHit& hit) const override;
   LightReach reach() const override;
+  double power(double scene_radius) const override;
 };
 
 Vec3d area_vector(const Mesh& mesh, const uint32_t* index) {
@@ -199,6 +206,10 @@ float TriangleEmitter::pdf(const LightHit& hit) const {
 float AnalyticEmitter::pdf(const LightHit& hit) const {
   return static_cast<float>(shape_.analytic->density_from(Vec3d(hit.o), Vec3d(hit.p)));
 }
+
+double TriangleEmitter::power(double) const { return power_of_area(area_vector(*shape_.mesh, indices()).length()); }
+
+double AnalyticEmitter::power(double) const { return power_of_area(shape_.analytic->placed_area()); }
 
 LightReach TriangleEmitter::reach() const {
   const Mesh& mesh = *shape_.mesh;

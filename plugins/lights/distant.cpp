@@ -43,6 +43,11 @@ class DistantLight final : public Light {
     return reach;
   }
 
+  /// Through a disk as large as the scene.
+  double power(double scene_radius) const override {
+    return detail::kPiD * scene_radius * scene_radius * strength_of(radiance_);
+  }
+
   void sample(const LightSamples& s) const override {
     const Vec3f to_light = to_light_;
     const RGB radiance = radiance_;

@@ -34,6 +34,8 @@ class GoniometricLight final : public PointSource {
     map_.look_up(n, s, t, out);
   }
 
+  RGB total_factor() const override { return (map_ ? map_.mean() : RGB(1.0f)) * (4 * kPi); }
+
   LightMap map_;
 };
 

@@ -30,6 +30,11 @@ class PointLight final : public Light {
 
   std::optional<Vec3d> position() const override { return exact_position_; }
 
+  double power(double) const override {
+    const auto to_render = static_cast<double>(to_render_);
+    return 4 * detail::kPiD * strength_of(intensity_) * to_render * to_render;
+  }
+
   void sample(const LightSamples& s) const override {
     const Vec3f position = position_;
     const RGB intensity = intensity_;

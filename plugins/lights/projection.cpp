@@ -27,6 +27,7 @@ class ProjectionLight final : public PointSource {
     const double corner = std::hypot(static_cast<double>(x_extent_), static_cast<double>(y_extent_));
     const double slant = std::hypot(1.0, corner);
     limit_to_cone({0, 0, 1}, 1 / slant, corner / slant);
+    solid_angle_ = static_cast<float>(2 * detail::kPiD * (1 - 1 / slant));
     return true;
   }
 
@@ -51,8 +52,12 @@ class ProjectionLight final : public PointSource {
     for_lanes(n, [&](int i) { out.set(i, out[i] * inside[i]); });
   }
 
+  /// As pbrt: the picture's mean all over the cone.
+  RGB total_factor() const override { return (map_ ? map_.mean() : RGB(1.0f)) * solid_angle_; }
+
   LightMap map_;
   float x_extent_ = 1, y_extent_ = 1;  ///< Of the picture at z = 1, half.
+  float solid_angle_ = 0;              ///< Of the cone through the picture's corners.
 };
 
 constexpr Range kFullAngle{kPositive.min, 179.999};

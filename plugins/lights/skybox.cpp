@@ -31,6 +31,8 @@ class GradientRadiance final : public DirectionalRadiance {
     for_lanes(n, [=](int i) { pdf[i] = 0.25f * kInvPi * max_of(1 + dot(a, d[i]), 0.0f); });
   }
 
+  double mean() const override { return 0.5 * strength_of(factor_); }
+
   void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override {
     const Frame frame = coordinate_system(axis_);
     const Vec3f axis = axis_;

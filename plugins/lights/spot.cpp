@@ -50,6 +50,9 @@ class SpotLight final : public PointSource {
     });
   }
 
+  /// As pbrt: that of a cone with a sharp edge half way through the soft one.
+  RGB total_factor() const override { return RGB(kPi * (edge_ + full_)); }
+
   Vec3f axis_{0, 0, 1};        ///< Light space, unit.
   float edge_ = 0, full_ = 0;  ///< 1 - cos of the angles where the light ends, and where it begins to fade.
 };

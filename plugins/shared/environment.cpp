@@ -200,6 +200,11 @@ void EnvironmentLight::add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d
   }
 }
 
+/// As pbrt has it, which leaves out a factor of pi. On a sphere what arrives at the centre counts.
+double EnvironmentLight::power(double scene_radius) const {
+  return detail::kPiD * scene_radius * scene_radius * radiance_->mean();
+}
+
 float EnvironmentLight::pdf(const Vec3f& p, const Vec3f& d) const {
   Vec3f point = p, direction = d;
   Block b;

@@ -17,6 +17,8 @@ class DirectionalRadiance {
   virtual void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const = 0;
   /// n directions for uniform numbers in [0,1).
   virtual void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const = 0;
+  /// How much it is on average over all directions (see strength_of()).
+  virtual double mean() const = 0;
 };
 
 /// The same radiance from everywhere, sampled uniformly.
@@ -25,6 +27,7 @@ class UniformRadiance final : public DirectionalRadiance {
   explicit UniformRadiance(const RGB& radiance) : radiance_(radiance) {}
   void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const override;
   void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override;
+  double mean() const override { return strength_of(radiance_); }
 
  private:
   RGB radiance_;
@@ -47,6 +50,7 @@ class EnvironmentLight : public Light {
   void sample(const LightSamples& s) const override;
   void add_escaped(int n, const Vec3Lanes& o, const Vec3Lanes& d, const RGBLanes& out, float* pdf) const override;
   float pdf(const Vec3f& p, const Vec3f& d) const override;
+  double power(double scene_radius) const override;
 
  protected:
   /// Sets what is seen; call from prepare().

@@ -104,6 +104,20 @@ void LatLongMap::build_cells() {
   });
 }
 
+/// Texels count by the height of their row's zone of the sphere.
+double LatLongMap::mean() const {
+  const auto columns = static_cast<size_t>(width_);
+  double sum = 0;
+  for (int row = 0; row < height_; ++row) {
+    const double zone = std::cos(detail::kPiD * row / height_) - std::cos(detail::kPiD * (row + 1) / height_);
+    const float* texel = radiance_.data() + 3 * columns * static_cast<size_t>(row);
+    double of_row = 0;
+    for (size_t i = 0; i < columns; ++i) of_row += importance(texel + 3 * i);
+    sum += 0.5 * zone * of_row / static_cast<double>(columns);
+  }
+  return sum;
+}
+
 void LatLongMap::evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const {
   float x[kBlock], y[kBlock];
   const auto width = static_cast<float>(width_), height = static_cast<float>(height_);

@@ -31,6 +31,7 @@ class LatLongMap final : public DirectionalRadiance {
 
   void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const override;
   void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override;
+  double mean() const override;
 
  private:
   /// A row of cells: the angle theta between two circles of latitude.

@@ -33,4 +33,12 @@ void LightMap::look_up(int n, const float* s, const float* t, const RGBLanes& ou
   });
 }
 
+RGB LightMap::mean() const {
+  // As pbrt: in the middle of the level of 2 x 2 texels.
+  const float middle = 0.5f, width = 0.5f;
+  RGB mean(0.0f);
+  image_->lookup_width(1, &middle, &middle, &width, &mean.x, &mean.y, &mean.z);
+  return mean;
+}
+
 }  // namespace whit

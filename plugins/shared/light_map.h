@@ -20,6 +20,8 @@ class LightMap {
   /// Colours at n places of the unit square, (0, 0) being the upper left corner; numbers that are negative or not
   /// finite are 0.
   void look_up(int n, const float* s, const float* t, const RGBLanes& out) const;
+  /// The mean of the picture, which is read for it; there must be one.
+  RGB mean() const;
 
  private:
   const ImageTexture* image_ = nullptr;

@@ -42,6 +42,11 @@ LightReach PointSource::reach() const {
   return reach;
 }
 
+double PointSource::power(double) const {
+  const auto to_render = static_cast<double>(to_render_);
+  return strength_of(intensity_ * total_factor()) * to_render * to_render;
+}
+
 void PointSource::sample(const LightSamples& s) const {
   alignas(64) float storage[6][kBlock];
   const Vec3Lanes d{storage[0], storage[1], storage[2]};

@@ -19,6 +19,7 @@ class PointSource : public Light {
   void sample(const LightSamples& s) const final;
   LightReach reach() const final;
   std::optional<Vec3d> position() const final { return exact_position_; }
+  double power(double scene_radius) const final;
 
  protected:
   /// The most lanes that factor() is called with.
@@ -33,6 +34,8 @@ class PointSource : public Light {
   /// What the intensity is multiplied with in n directions from the light (light space, not of length 1; 0 at the light
   /// itself).
   virtual void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const = 0;
+  /// That summed over all directions of light space, roughly.
+  virtual RGB total_factor() const = 0;
 
  private:
   Vec3d exact_position_{0, 0, 0};  ///< Render space.
