@@ -34,8 +34,12 @@ struct LightHit {
   Vec3f p, ng;  ///< The point and the unit normal there, which points to the front.
 };
 
-/// How a light is chosen where only one is sampled for each point.
-enum class LightStrategy : uint8_t { Spatial, Uniform, Power };
+/// How the light is chosen that is sampled at a point where only one is.
+enum class LightStrategy : uint8_t {
+  Spatial,  ///< By how much may arrive at the point.
+  Uniform,  ///< All alike.
+  Power,    ///< In proportion to their power.
+};
 
 /// How much a colour counts where light is shared out: its luminance, in double because floats could overflow; of
 /// magnitudes, because colours out of gamut have negative parts.
