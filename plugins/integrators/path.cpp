@@ -23,7 +23,10 @@ struct Path final : Integrator {
   EffectSet effects() const override { return maxdepth > 0 ? EffectSet{Effect::Indirect} : EffectSet{}; }
   bool keeps_differentials() const override { return false; }
   bool keeps_densities() const override { return true; }
-  std::optional<LightStrategy> light_strategy() const override { return static_cast<LightStrategy>(strategy.index); }
+  std::optional<LightStrategy> light_strategy() const override {
+    constexpr LightStrategy kNamed[] = {LightStrategy::Spatial, LightStrategy::Uniform, LightStrategy::Power};
+    return kNamed[strategy.index];
+  }
 
   /// What is drawn at each bounce: a light and a point of it, a lobe and a direction of it, and whether to go on.
   enum Dimension : int { kLight = 0, kLobe = 3, kRoulette = 6, kDimensions = 7 };
