@@ -30,9 +30,11 @@ struct LightReach {
   From from = From::Anywhere;
   bool one_sided = false;             ///< The points of the box lie in a plane, of which one side is lit.
   Vec3f low{0, 0, 0}, high{0, 0, 0};  ///< Box: of all sampled points, render space.
-  Vec3f normal{0, 0, 0};              ///< Direction: unit, towards the light. One-sided: unit, towards the lit side.
-  double plane = 0;                   ///< One-sided: the least dot(normal, q) of a sampled point q.
-  const LightCone* cone = nullptr;    ///< The light's, if it has one; its apex is the box.
+  /// Unit. Direction: towards the light. Box: across the plane that its points lie in, if they do; one-sided: towards the
+  /// lit side. Else 0.
+  Vec3f normal{0, 0, 0};
+  double plane = 0;                 ///< One-sided: the least dot(normal, q) of a sampled point q.
+  const LightCone* cone = nullptr;  ///< The light's, if it has one; its apex is the box.
 };
 
 /// Of a light at a point of render space whose radiance is at most intensity * (to_render / distance)^2.

@@ -219,8 +219,9 @@ LightReach TriangleEmitter::reach() const {
   Box3d box;
   for (const Vec3d& corner : corners) box.extendBy(corner);
   LightReach reach = within(box, emission_.radiance);
-  if (emission_.two_sided) return reach;
   const Vec3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+  reach.normal = Vec3f(n);
+  if (emission_.two_sided) return reach;
   const int side = side_of_normals(mesh, index, n);
   if (side != 0) set_front(reach, n * (shape_.flips ? -side : side), corners);
   return reach;
@@ -231,11 +232,14 @@ LightReach AnalyticEmitter::reach() const {
   const Box3d box = shape.object_bounds();
   const Box3d placed = transform_box(shape.object_to_scene(), box);
   LightReach reach = within(placed, emission_.radiance);
-  if (emission_.two_sided || !shape.is_planar()) return reach;
+  if (!shape.is_planar()) return reach;
+  // Of a plane, any sample has the normal, seen from anywhere.
+  const Vec3d n = shape.sample_from(placed.max + Vec3d(1, 2, 3), 0.5, 0.5).n;
+  reach.normal = Vec3f(n);
+  if (emission_.two_sided) return reach;
   std::array<Vec3d, 8> corners = corners_of(box);
   for (Vec3d& corner : corners) corner = transform_point(shape.object_to_scene(), corner);
-  // Of a plane, any sample has the normal, seen from anywhere.
-  set_front(reach, shape.sample_from(placed.max + Vec3d(1, 2, 3), 0.5, 0.5).n, corners);
+  set_front(reach, n, corners);
   return reach;
 }
 

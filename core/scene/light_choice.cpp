@@ -133,7 +133,8 @@ LightCluster cluster_of(const SceneLight& l, double scene_radius) {
   if (l.shape >= 0) {
     // Of a surface, radiance times area.
     c.strength = power / (detail::kPiD * (l.light->is_two_sided() ? 2 : 1));
-    if (l.reach.one_sided) c.axis = Vec3d(l.reach.normal).normalized(), c.spread = 0;
+    const Vec3d normal = Vec3d(l.reach.normal).normalized();
+    if (normal.length2() > 0.5) c.axis = normal, c.spread = 0, c.two_fronts = !l.reach.one_sided;
     return c;
   }
   const LightCone* cone = l.reach.cone;

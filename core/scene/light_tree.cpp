@@ -35,6 +35,9 @@ double vagueness(const LightCluster& c) { return c.strength * c.box.size().lengt
 }  // namespace
 
 void add_to(LightCluster& a, const LightCluster& b) {
+  a.two_fronts |= b.two_fronts;
+  // Of two fronts it does not matter which is called the first.
+  if (a.two_fronts && a.axis.dot(b.axis) < 0) a.axis = -a.axis;
   add_cone(a, b);
   a.box.extendBy(b.box);
   a.edge = std::max(a.edge, b.edge);
@@ -52,6 +55,7 @@ LightBall ball_around(const LightCluster& c, double unit) {
   if (c.spread >= detail::kPiD) b.cos_spread = -1, b.sin_spread = 0;
   b.cos_edge = static_cast<float>(std::cos(std::min(c.edge + kEdgeRounding, 0.5 * detail::kPiD)));
   b.strength = static_cast<float>(c.strength / unit);
+  b.fronts = c.two_fronts ? 2 : 1;
   return b;
 }
 
@@ -122,7 +126,7 @@ LightTree::Builder::Cut LightTree::Builder::best_cut(std::span<const int32_t> li
   std::array<Slices, 3> slices;
   for (const int32_t i : lights) {
     const LightCluster& c = light(i);
-    const bool aims = c.spread < 0.5 * detail::kPiD;
+    const bool aims = c.spread < 0.5 * detail::kPiD && !c.two_fronts;
     const Slice alone{c.box, c.axis * (aims ? c.strength : 0.0), c.strength};
     const Vec3d at = middle(i);
     for (int axis = 0; axis < 3; ++axis) {
