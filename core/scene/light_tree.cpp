@@ -35,7 +35,7 @@ double vagueness(const LightCluster& c) { return c.strength * c.box.size().lengt
 }  // namespace
 
 void add_to(LightCluster& a, const LightCluster& b) {
-  a.two_fronts |= b.two_fronts;
+  a.two_fronts |= b.two_fronts, a.flat = false;
   // Of two fronts it does not matter which is called the first.
   if (a.two_fronts && a.axis.dot(b.axis) < 0) a.axis = -a.axis;
   add_cone(a, b);
@@ -56,6 +56,8 @@ LightBall ball_around(const LightCluster& c, double unit) {
   b.cos_edge = static_cast<float>(std::cos(std::min(c.edge + kEdgeRounding, 0.5 * detail::kPiD)));
   b.strength = static_cast<float>(c.strength / unit);
   b.fronts = c.two_fronts ? 2 : 1;
+  constexpr float kSlab = 0.01f;  // of the radius
+  b.slab = c.flat && b.radius > 0 ? 1 / (kSlab * b.radius) : 0;
   return b;
 }
 

@@ -18,6 +18,7 @@ struct LightCluster {
   Vec3d axis{0, 0, 1};      ///< Unit. What shines is turned away from it by `spread` at most.
   double spread = 0;        ///< Radians; pi where light goes everywhere.
   double edge = 0;          ///< Of what is turned some way, how far to the side light goes: half pi of surfaces.
+  bool flat = false;        ///< All of it lies in a plane across the axis.
   bool two_fronts = false;  ///< What shines along some direction does so against it too.
   double strength = 0;      ///< Radiant intensity to where it is greatest (see strength_of()).
 };
@@ -32,6 +33,7 @@ struct LightBall {
   Vec3f axis;
   float cos_spread, sin_spread, cos_edge, strength;
   float fronts;  ///< 1 or 2.
+  float slab;    ///< Unless 0, one over the height above a flat one from which on it shines in full.
 };
 
 /// What may arrive from the ball at p, at most as far as the light's direction goes: intensity by distance squared. Never
@@ -49,10 +51,13 @@ inline float irradiance_from(const LightBall& b, const Vec3f& p) {
   const float sin_ball = b.radius * inverse, cos_ball = safe_sqrt(1 - sin_ball * sin_ball);
   const float cos_free = b.cos_spread * cos_ball - b.sin_spread * sin_ball;
   const float sin_free = b.sin_spread * cos_ball + b.cos_spread * sin_ball;
-  const float along = dot(b.axis, to) * inverse, cosine = b.fronts > 1 ? std::abs(along) : along;
+  const float above = dot(b.axis, to), height = b.fronts > 1 ? std::abs(above) : above, cosine = height * inverse;
   const float beyond = cosine * cos_free + safe_sqrt(1 - cosine * cosine) * sin_free;
   const bool anywhere = (squared <= wall) | ((sin_free <= 0) & (cos_free < 0)) | (cosine >= cos_free);
-  const float turned = anywhere ? 1.0f : beyond;
+  const float of_ball = anywhere ? 1.0f : beyond;
+  // What is flat does not light itself, nor what lies in its plane.
+  const float of_plane = min_of(of_ball, height * b.slab);
+  const float turned = b.slab > 0 ? of_plane : of_ball;
   const float lit = max_of(turned, kTurnedAway);
   const float share = turned >= b.cos_edge ? lit : kTurnedAway;
   return max_of(b.strength * share * inverse * inverse, kLeast);
@@ -66,17 +71,18 @@ template <int N>
 struct LightBalls {
   using Lanes = std::array<float, N>;
   alignas(32) Lanes x{}, y{}, z{}, radius{}, axis_x{}, axis_y{}, axis_z{}, cos_spread{},
-      sin_spread{}, cos_edge{}, strength{}, fronts{};
+      sin_spread{}, cos_edge{}, strength{}, fronts{}, slab{};
 
   LightBall operator[](size_t k) const {
-    return {{x[k], y[k], z[k]}, radius[k], {axis_x[k], axis_y[k], axis_z[k]}, cos_spread[k], sin_spread[k], cos_edge[k],
-            strength[k],        fronts[k]};
+    return {{x[k], y[k], z[k]}, radius[k],     {axis_x[k], axis_y[k], axis_z[k]},
+            cos_spread[k],      sin_spread[k], cos_edge[k],
+            strength[k],        fronts[k],     slab[k]};
   }
   void set(size_t k, const LightBall& b) {
     x[k] = b.center.x, y[k] = b.center.y, z[k] = b.center.z, radius[k] = b.radius;
     axis_x[k] = b.axis.x, axis_y[k] = b.axis.y, axis_z[k] = b.axis.z;
     cos_spread[k] = b.cos_spread, sin_spread[k] = b.sin_spread, cos_edge[k] = b.cos_edge;
-    strength[k] = b.strength, fronts[k] = b.fronts;
+    strength[k] = b.strength, fronts[k] = b.fronts, slab[k] = b.slab;
   }
   /// irradiance_from() of all of them.
   void weigh(const Vec3f& p, Lanes& out) const {

@@ -250,11 +250,27 @@ TEST(LightChoice, SurfacesWithTwoFrontsShineLittleAlongTheirPlane) {
   lamps.add_surface({-0.5f, 0, 9.5f}, {0.5f, 0, 10.5f}, {0, 1, 0}, 1);
   lamps.lights[1].reach.one_sided = false;
   const auto choice = lamps.choice();
-  // The ball of radius sqrt(1/2) looks asin(0.0707) large: so much a part of it may be turned to the origin.
-  const double turned = std::sqrt(0.5) / 10;
-  EXPECT_NEAR(uneven(static_cast<double>(choice->probability(1, {0, 0, 0})), 2), turned / (1 + turned), 1e-5);
+  // Nothing comes to a point of the plane; a share of 1e-4 is kept.
+  EXPECT_NEAR(uneven(static_cast<double>(choice->probability(1, {0, 0, 0})), 2), 1e-4 / (1 + 1e-4), 1e-6);
   // Straight ahead of either front the two are alike.
   for (const float y : {-100.0f, 100.0f}) EXPECT_NEAR(choice->probability(1, {0, y, 10}), 0.5f, 1e-5f);
+}
+
+TEST(LightChoice, FlatLightsDoNotLightThemselves) {
+  // As seen from a point of the light, which is in its ball, it looks 1e4 times brighter than the other one.
+  for (const bool one_sided : {true, false}) {
+    Lamps lamps;
+    lamps.add_surface({-0.5f, 0, -0.5f}, {0.5f, 0, 0.5f}, {0, 1, 0}, 1);
+    lamps.lights[0].reach.one_sided = one_sided;
+    lamps.add_point({0, 20, 0}, 1);
+    const auto choice = lamps.choice();
+    const auto own = [&](float y) { return uneven(static_cast<double>(choice->probability(0, {0.3f, y, 0.2f})), 2); };
+    // The square of the distance to the ball's middle, at least a sixth of 1/2; a share of 1e-4; and 1 / 400.
+    EXPECT_NEAR(own(1e-7f), 1e-4 / 0.13 / (1e-4 / 0.13 + 1 / 400.0), 2e-2);
+    EXPECT_GT(own(0.1f), 0.99);
+    if (one_sided) EXPECT_LT(own(-0.1f), 0.3);
+    else EXPECT_GT(own(-0.1f), 0.99);
+  }
 }
 
 /// Pairs of a point and a surface that is turned anyhow, near and far from each other.
