@@ -104,8 +104,7 @@ DirectSamples Tracer::sample_one(const Points& points, int dimension) {
   const float* const choice = draw_1d(points, dimension);
   const Uniform2 numbers = draw_2d(points, dimension + 1);
   s.u = numbers.u, s.v = numbers.v;
-  if (std::any_of(scene_.lights.begin(), scene_.lights.end(), [](const SceneLight& l) { return l.end.touched; }))
-    s.q = arena_.vec3(n);
+  if (scene_.any_touched) s.q = arena_.vec3(n);
   int32_t *light = arena_.alloc<int32_t>(n), *order = arena_.alloc<int32_t>(n);
   float* const probability = arena_.floats(n);
   scene_.light_choice->choose(n, s.p, choice, light, probability);

@@ -690,8 +690,9 @@ class Builder {
     if (problem.empty()) {
       for_each(scene_->lights.size(),
                [&](size_t i, Diagnostics&) { scene_->lights[i].end = end_of(*scene_, scene_->lights[i]); });
-      if (std::any_of(scene_->lights.begin(), scene_->lights.end(), [](const SceneLight& l) { return l.end.touched; }))
-        problem = scene_->accel->watch_ends();
+      scene_->any_touched =
+          std::any_of(scene_->lights.begin(), scene_->lights.end(), [](const SceneLight& l) { return l.end.touched; });
+      if (scene_->any_touched) problem = scene_->accel->watch_ends();
     }
     if (!problem.empty()) diagnostics_.error(description().world_begin, problem);
   }

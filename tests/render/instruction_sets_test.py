@@ -40,6 +40,9 @@ SCENES = {
              'Material "mirror" Translate 1.2 1.2 0 Shape "sphere" "float radius" 0.7\nWorldEnd\n',
     "texture": HEAD + 'Texture "t" "color" "fbm" "integer octaves" 4 Texture "b" "float" "wrinkled"\n'
                'Material "uber" "texture Kd" "t" "texture bumpmap" "b" Shape "sphere" "float radius" 0.9\nWorldEnd\n',
+    "path": HEAD.replace('"whitted" "integer maxdepth" 6', '"path"') + 'Material "plastic" "float roughness" 0.1\n'
+            'AttributeBegin Shape "sphere" "float radius" 0.9 AttributeEnd\n'
+            'Material "matte" Shape "sphere" "float radius" 7\nWorldEnd\n',
 }
 
 
