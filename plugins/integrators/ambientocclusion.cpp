@@ -1,7 +1,6 @@
 // Ambient occlusion: how much of the hemisphere over a point is free, weighted by the cosine.
 // Source: Zhukov, Iones and Kronin, An Ambient Light Illumination Model, 1998; pbrt-v3's "ambientocclusion".
 
-#include "core/base/fastmath.h"
 #include "core/base/sampling.h"
 #include "core/plugin/integrator.h"
 #include "core/plugin/registry.h"
