@@ -47,7 +47,6 @@ struct DirectSamples : LightSamples {
   static constexpr int kNone = -1;
   int light = kNone;  ///< Number of the light; kNone when it is another for each point, or no light at all.
   const int32_t* lights = nullptr;  ///< Numbers by point, or null.
-  bool is_delta = false;            ///< No direction that is sampled otherwise can meet it.
 };
 
 /// What the lobes do with a direction.

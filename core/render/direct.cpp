@@ -57,7 +57,7 @@ float Tracer::expected_samples(int light, const Vec3f& p) const {
 DirectSamples Tracer::sample(const Points& points, int light_number, int number, int of, bool densities) {
   const SceneLight& light = scene_.lights[static_cast<size_t>(light_number)];
   DirectSamples s = allocate_samples(points, densities && light.dimension >= 0);
-  s.light = light_number, s.is_delta = light.dimension < 0;
+  s.light = light_number;
   if (light.dimension >= 0) {
     const Uniform2 numbers = draw_2d(points, light.dimension);
     if (number > 0) {

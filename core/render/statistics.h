@@ -17,7 +17,7 @@ struct RenderStatistics {
   int64_t time_samples = 0, lens_samples = 0;
   int64_t texture_values = 0;  ///< Points that textures were evaluated at for materials.
   int64_t alpha_tests = 0;     ///< Hits that alpha masks were asked about.
-  int64_t lights_skipped = 0;  ///< Rounds times lights that could reach none of the round's points.
+  int64_t lights_skipped = 0;  ///< Batches times lights that could reach none of the batch's points.
 
   int64_t stopped_rays = 0;           ///< That did not get ahead at interfaces; their samples are invalid.
   int64_t invalid_samples = 0;        ///< NaN, infinite or of negative luminance: left out of the picture.
