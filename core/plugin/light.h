@@ -24,7 +24,7 @@ struct LightSamples {
   float* distance = nullptr;  ///< Along wi to the sampled point; infinity for lights at infinity.
   RGBLanes radiance;          ///< Incident radiance divided by pdf; 0 where the light does not reach p.
   Vec3Lanes q;                ///< Unless null: the sampled points. Of emitting triangles only.
-  float* pdf = nullptr;       ///< Unless null: per solid angle at p; 0 where there is no radiance..
+  float* pdf = nullptr;       ///< Unless null: per solid angle at p; 0 where there is no radiance.
 };
 
 /// What a ray has met that may emit; render space.
