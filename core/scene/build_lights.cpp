@@ -1,0 +1,86 @@
+#include "core/scene/build_lights.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/scene/light_end.h"
+
+namespace whit {
+namespace {
+
+void add_light(Scene& scene, SceneLight entry) {
+  if (!entry.light->is_delta()) {
+    entry.dimension = scene.light_dimensions;
+    scene.light_dimensions += 2;
+  }
+  entry.reach = entry.light->reach();
+  entry.samples = entry.light->sample_count();
+  scene.lights.push_back(entry);
+}
+
+/// Whether a light is at a place that cannot be calculated with; says so.
+bool is_too_far(const BuildContext& context, const Bound<Light>& light) {
+  // Squares of distances up to here are within the range of floats.
+  constexpr double kFarthestLight = 1e18;
+  const std::optional<Vec3d> position = light.plugin->position();
+  if (!position || position->length() < kFarthestLight) return false;
+  context.diagnostics.warning(
+      light.where, fmt::format("this light is {:.3g} units away", position->length() / context.scene.space.scale),
+      "left out: floats cannot hold the square of that beside the rest of the scene");
+  return true;
+}
+
+/// As in pbrt, each triangle of an emitting mesh is a light of its own.
+void add_emitters(Scene& scene, const LitShape& lit) {
+  SceneShape& shape = scene.shapes[static_cast<size_t>(lit.index)];
+  shape.emitter = static_cast<int>(scene.emitters.size());
+  const bool sampled = lit.in_world && scene.plan.direct_light && !shape.curves;
+  if (sampled) shape.first_light = static_cast<int>(scene.lights.size());
+  const size_t count = sampled && shape.mesh ? shape.mesh->triangle_count() : 1;
+  for (size_t t = 0; t < count; ++t) {
+    const auto prim = static_cast<uint32_t>(t);
+    scene.emitters.push_back(make_emitter(shape, prim, lit.emission));
+    if (sampled) add_light(scene, {.light = scene.emitters.back().get(), .shape = lit.index, .prim = prim});
+  }
+}
+
+}  // namespace
+
+std::optional<Emission> emission_of(const BuildContext& context, const ShapeDescription& description, bool is_curve,
+                                    bool is_moving) {
+  if (is_moving && description.area_light >= 0) {
+    context.diagnostics.warning(description.where, "a moving shape cannot be an area light",
+                                "it is shown without emission, as in pbrt");
+  }
+  const AreaLight* light = context.scene.bound.emission_of(description);
+  if (is_moving || !light || !context.scene.plan.needed.has(Effect::AreaLights)) return {};
+  if (is_curve) {
+    context.diagnostics.warning(description.where, "a curve cannot light other surfaces", "it glows, and that is all");
+  }
+  // A curve always faces the ray, so it has no back that could be dark.
+  return Emission{light->radiance(), light->two_sided() || is_curve, light->sample_count()};
+}
+
+void build_lights(const BuildContext& context, std::span<const LitShape> lit, Scene& scene) {
+  for (size_t i = 0; i < scene.bound.lights.size(); ++i) {
+    auto& light = scene.bound.lights[i];
+    if (!scene.plan.light_live[i]) continue;
+    context.prepare(light);
+    if (!light.plugin || is_too_far(context, light)) continue;
+    const int number = scene.plan.direct_light ? static_cast<int>(scene.lights.size()) : -1;
+    if (number >= 0) add_light(scene, {.light = light.plugin.get()});
+    if (light.plugin->is_environment()) scene.environments.push_back({light.plugin.get(), number});
+  }
+  for (const LitShape& shape : lit) add_emitters(scene, shape);
+  const std::optional<LightStrategy> strategy = scene.integrator().light_strategy();
+  if (strategy && !scene.lights.empty())
+    scene.light_choice = make_light_choice(scene.lights, *strategy, context.scene_radius);
+}
+
+bool find_light_ends(const BuildContext& context, std::vector<SceneLight>& lights) {
+  context.for_each(lights.size(), [&](size_t i, Diagnostics&) { lights[i].end = end_of(context.scene, lights[i]); });
+  return std::any_of(lights.begin(), lights.end(), [](const SceneLight& l) { return l.end.touched; });
+}
+
+}  // namespace whit
