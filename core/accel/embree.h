@@ -35,8 +35,9 @@ constexpr RTCSceneFlags kQueryFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 
 /// What Embree hands on to callbacks: its own context, and behind it ours.
 struct QueryContext : EmbreeContext {
-  const void* shadow = nullptr;  ///< Of occlusion queries that know what their rays end on: a ShadowRays of accel.cpp.
-  int unshaded_by = -1;          ///< The same as RayEnd::unshaded_by, for rays that know no more than that.
+  const void* shadow =
+      nullptr;  ///< Of occlusion queries that know what their rays end on: ShadowRays, core/accel/shadow_rays.h.
+  int unshaded_by = -1;  ///< The same as RayEnd::unshaded_by, for rays that know no more than that.
 };
 
 /// One thread's queries with one coherence hint. trace() finds nearest hits for RTCRayHit and its packets, and

@@ -1,0 +1,60 @@
+// The shadow rays of a call on their way through Embree: how far they are traced, and what callbacks know of their ends.
+#pragma once
+
+#include "core/accel/accel.h"
+#include "core/accel/embree.h"
+
+namespace whit {
+
+/// For Embree's callbacks; a ray's id is its number among them.
+struct ShadowRays {
+  RTCScene world;
+  const RayLanes& rays;
+
+  const RayEnd& end(unsigned id) const { return end_of(rays, static_cast<int>(id)); }
+};
+
+/// Null when the rays of the query end at their distances.
+inline const ShadowRays* shadow_of(const EmbreeContext* context) {
+  return static_cast<const ShadowRays*>(static_cast<const QueryContext*>(context)->shadow);
+}
+
+/// How far beyond its end a ray is traced, for what decides there knows better than floats where the end is
+/// (core/accel/ray_end.h). Of a plane that nothing else is near to, t_max is in front.
+struct Beyond {
+  float stretch = 1, room = 0;
+  explicit Beyond(const RayEnd& end) {
+    const bool touched = end.on != RayEnd::On::Nothing && end.touched;
+    stretch = touched ? 2.0f : 1.0f;
+    if (touched || (end.on != RayEnd::On::Nothing && end.on != RayEnd::On::Plane))
+      room = static_cast<float>(kNearEnd / 2);
+  }
+};
+
+/// The ends of the shadow rays of a call: one, or one for each.
+struct ShadowEnds {
+  const RayLanes& rays;
+  bool any = false, touched = false;  ///< Whether some ray ends on something; on something that is touched.
+
+  explicit ShadowEnds(const RayLanes& r) : rays(r) {
+    for (int i = 0; i < (rays.ends ? rays.n : rays.end ? 1 : 0); ++i) {
+      const RayEnd& end = end_of(rays, i);
+      any |= end.on != RayEnd::On::Nothing;
+      touched |= end.on != RayEnd::On::Nothing && end.touched;
+    }
+  }
+  void lengthen(int first, int count, float* t_far) const {
+    if (!any) return;
+    if (!rays.ends) {
+      const Beyond beyond(*rays.end);
+      for (int i = 0; i < count; ++i) t_far[i] = t_far[i] * beyond.stretch + beyond.room;
+      return;
+    }
+    for (int i = 0; i < count; ++i) {
+      const Beyond beyond(*rays.ends[first + i]);
+      t_far[i] = t_far[i] * beyond.stretch + beyond.room;
+    }
+  }
+};
+
+}  // namespace whit
