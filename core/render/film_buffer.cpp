@@ -25,46 +25,29 @@ FilterTable::FilterTable(const Filter& filter)
   is_own_pixel_ = x_radius_ == 0.5f && y_radius_ == 0.5f && std::all_of(table_.begin(), table_.end(), is_first);
 }
 
-TileSums::TileSums(Vec2i tile, const FilterTable& filter)
+TileReach::TileReach(Vec2i tile, const FilterTable& filter)
     : filter_(&filter),
       x0_(tile.x * kTile - filter.x_reach()),
       y0_(tile.y * kTile - filter.y_reach()),
       width_(kTile + 2 * filter.x_reach()),
       height_(kTile + 2 * filter.y_reach()),
-      sums_(4 * static_cast<size_t>(width_) * static_cast<size_t>(height_)),
       columns_(static_cast<size_t>(width_)) {}
 
+TileSums::TileSums(Vec2i tile, const FilterTable& filter) : reach_(tile, filter), sums_(4 * reach_.pixels()) {}
+
 void TileSums::add(float film_x, float film_y, const RGB& radiance) {
-  // Pixel p is reached when p + 0.5 is within the radius of the sample, the rim included, so that a sample in the middle
-  // of its pixel reaches as far to both sides; but never beyond the reach, so that a box of radius 0.5 gives every
-  // sample to exactly one pixel.
-  const float dx = film_x - 0.5f, dy = film_y - 0.5f;
-  const auto first = [](float middle, float radius, int reach) {
-    return std::max(static_cast<int>(std::ceil(middle - radius)), static_cast<int>(std::floor(middle + 0.5f)) - reach);
-  };
-  const int px0 = std::max(first(dx, filter_->x_radius(), filter_->x_reach()), x0_);
-  const int px1 = std::min(static_cast<int>(std::floor(dx + filter_->x_radius())), x0_ + width_ - 1);
-  const int py0 = std::max(first(dy, filter_->y_radius(), filter_->y_reach()), y0_);
-  const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
-  if (px0 > px1) return;
-  for (int x = px0; x <= px1; ++x) columns_[static_cast<size_t>(x - px0)] = filter_->column(static_cast<float>(x) - dx);
   const double value[4] = {radiance.x, radiance.y, radiance.z, 1};
-  for (int y = py0; y <= py1; ++y) {
-    const float* weights = filter_->row(static_cast<float>(y) - dy);
-    double* sums =
-        &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(px0 - x0_))];
-    for (int x = px0; x <= px1; ++x, sums += 4) {
-      const double w = weights[columns_[static_cast<size_t>(x - px0)]];
-      for (int c = 0; c < 4; ++c) sums[c] += w * value[c];
-    }
-  }
+  reach_.each_reached(film_x, film_y, [&](int pixel, double weight) {
+    double* const sums = &sums_[4 * static_cast<size_t>(pixel)];
+    for (int c = 0; c < 4; ++c) sums[c] += weight * value[c];
+  });
 }
 
 void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable) {
   for (int first = 0; first < n; first += kBlock) {
     const int count = std::min(kBlock, n - first);
     const float *x = film_x + first, *y = film_y + first;
-    if (filter_->is_own_pixel()) {
+    if (reach_.filter().is_own_pixel()) {
       add_to_own_pixels(count, x, y, radiance.from(first), usable + first);
       continue;
     }
@@ -79,13 +62,14 @@ void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLan
 void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
                                  const uint8_t* usable) {
   int cell[kBlock + 1];
+  const TileReach& reach = reach_;
   for_lanes(n, [&](int i) {
-    const int x = static_cast<int>(std::floor(film_x[i])) - x0_, y = static_cast<int>(std::floor(film_y[i])) - y0_;
-    const bool inside = (x >= 0) & (y >= 0) & (x < width_) & (y < height_) & (usable[i] != 0);
-    cell[i] = inside ? y * width_ + x : -1;
+    const int x = static_cast<int>(std::floor(film_x[i])), y = static_cast<int>(std::floor(film_y[i]));
+    const bool inside = reach.holds(x, y) & (usable[i] != 0);
+    cell[i] = inside ? reach.number(x, y) : -1;
   });
   cell[n] = -2;
-  const double w = filter_->weight(0, 0);
+  const double w = reach_.filter().weight(0, 0);
   for (int i = 0; i < n;) {
     const int at = cell[i];
     if (at < 0) {
@@ -102,34 +86,17 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
   }
 }
 
-namespace {
-
-/// The tiles that reach a row or column of pixels: [first, last] in tile numbers.
-std::pair<int, int> tiles_around(int pixel, int reach) {
-  const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileSums::kTile)); };
-  return {tile_of(pixel - reach), tile_of(pixel + reach)};
-}
-
-}  // namespace
-
-void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tiles_x, const FilterTable& filter,
-                  float scale, Picture& picture) {
-  const int tiles_y = static_cast<int>(tiles.size()) / std::max(tiles_x, 1);
+void resolve_film(const std::vector<TileSums>& tiles, const TileGrid& grid, const FilterTable& filter, float scale,
+                  Picture& picture) {
   picture.rgb.assign(3 * static_cast<size_t>(picture.width()) * static_cast<size_t>(picture.height()), 0.0f);
   tbb::parallel_for(0, picture.height(), [&](int row) {
-    const int y = picture.window.min.y + row;
-    const auto [ty0, ty1] = tiles_around(y, filter.y_reach());
     for (int column = 0; column < picture.width(); ++column) {
-      const int x = picture.window.min.x + column;
-      const auto [tx0, tx1] = tiles_around(x, filter.x_reach());
+      const Vec2i pixel = picture.window.min + Vec2i(column, row);
       double sum[4] = {0, 0, 0, 0};
-      // Row by row, left to right: the order of additions depends on the pixel alone.
-      for (int ty = std::max(ty0, first_tile.y); ty <= std::min(ty1, first_tile.y + tiles_y - 1); ++ty) {
-        for (int tx = std::max(tx0, first_tile.x); tx <= std::min(tx1, first_tile.x + tiles_x - 1); ++tx) {
-          const double* s = tiles[static_cast<size_t>((ty - first_tile.y) * tiles_x + tx - first_tile.x)].at(x, y);
-          for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
-        }
-      }
+      grid.each_around(pixel, filter, [&](size_t tile) {
+        const double* s = tiles[tile].at(pixel.x, pixel.y);
+        for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
+      });
       float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) +
                                      static_cast<size_t>(column))];
       for (int c = 0; c < 3; ++c)

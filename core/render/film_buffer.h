@@ -40,11 +40,43 @@ class FilterTable {
   bool is_own_pixel_ = false;
 };
 
-/// Sums of one tile and a border around it as wide as the filter reaches. Tiles lie on a grid that is fixed
-/// to the full picture, so that a crop adds the same samples in the same order.
-class TileSums {
+/// The pixels that samples of one tile reach: the tile and a border around it as wide as the filter reaches. Tiles lie on
+/// a grid that is fixed to the full picture, so that a crop adds the same samples in the same order.
+class TileReach {
  public:
   static constexpr int kTile = 16;
+
+  TileReach(Vec2i tile, const FilterTable& filter);
+  size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
+  bool holds(int x, int y) const { return (x >= x0_) & (y >= y0_) & (x < x0_ + width_) & (y < y0_ + height_); }
+  /// The number of a pixel that it holds.
+  int number(int x, int y) const { return (y - y0_) * width_ + x - x0_; }
+  /// Calls body(number of the pixel, weight) for the pixels that a sample reaches, row by row.
+  template <class Body>
+  void each_reached(float film_x, float film_y, const Body& body);
+
+  const FilterTable& filter() const { return *filter_; }
+
+ private:
+  const FilterTable* filter_;
+  int x0_, y0_, width_, height_;
+  std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
+};
+
+/// The tiles of a picture, row by row.
+struct TileGrid {
+  Vec2i first{0, 0};  ///< The first one's place on the fixed grid.
+  int columns = 0, rows = 0;
+  /// Calls body(number of the tile) for the tiles whose samples may reach a pixel: row by row, left to right, so that the
+  /// order of additions depends on the pixel alone.
+  template <class Body>
+  void each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const;
+};
+
+/// Sums of the samples of one tile.
+class TileSums {
+ public:
+  static constexpr int kTile = TileReach::kTile;
 
   TileSums(Vec2i tile, const FilterTable& filter);
   /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
@@ -54,8 +86,7 @@ class TileSums {
 
   /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
   const double* at(int x, int y) const {
-    if (x < x0_ || y < y0_ || x >= x0_ + width_ || y >= y0_ + height_) return nullptr;
-    return &sums_[4 * (static_cast<size_t>(y - y0_) * static_cast<size_t>(width_) + static_cast<size_t>(x - x0_))];
+    return reach_.holds(x, y) ? &sums_[4 * static_cast<size_t>(reach_.number(x, y))] : nullptr;
   }
 
  private:
@@ -63,10 +94,8 @@ class TileSums {
   void add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
                          const uint8_t* usable);
 
-  const FilterTable* filter_;
-  int x0_, y0_, width_, height_;
+  TileReach reach_;
   std::vector<double> sums_;  ///< Double: a million floats of one size are added with an error of 1 %.
-  std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
 };
 
 /// The finished picture: linear RGB of the cropped window, row by row.
@@ -79,8 +108,41 @@ struct Picture {
 };
 
 /// Divides sums by weights; negative results become 0; scaled by the film's scale.
-/// `tiles` is a grid (row-major, tiles_x wide) whose first tile is `first_tile`.
-void resolve_film(const std::vector<TileSums>& tiles, Vec2i first_tile, int tiles_x, const FilterTable& filter,
-                  float scale, Picture& picture);
+void resolve_film(const std::vector<TileSums>& tiles, const TileGrid& grid, const FilterTable& filter, float scale,
+                  Picture& picture);
+
+template <class Body>
+void TileReach::each_reached(float film_x, float film_y, const Body& body) {
+  // Pixel p is reached when p + 0.5 is within the radius of the sample, the rim included, so that a sample in the middle
+  // of its pixel reaches as far to both sides; but never beyond the reach, so that a box of radius 0.5 gives every
+  // sample to exactly one pixel.
+  const float dx = film_x - 0.5f, dy = film_y - 0.5f;
+  const auto first = [](float middle, float radius, int reach) {
+    return std::max(static_cast<int>(std::ceil(middle - radius)), static_cast<int>(std::floor(middle + 0.5f)) - reach);
+  };
+  const int px0 = std::max(first(dx, filter_->x_radius(), filter_->x_reach()), x0_);
+  const int px1 = std::min(static_cast<int>(std::floor(dx + filter_->x_radius())), x0_ + width_ - 1);
+  const int py0 = std::max(first(dy, filter_->y_radius(), filter_->y_reach()), y0_);
+  const int py1 = std::min(static_cast<int>(std::floor(dy + filter_->y_radius())), y0_ + height_ - 1);
+  if (px0 > px1) return;
+  for (int x = px0; x <= px1; ++x) columns_[static_cast<size_t>(x - px0)] = filter_->column(static_cast<float>(x) - dx);
+  for (int y = py0; y <= py1; ++y) {
+    const float* weights = filter_->row(static_cast<float>(y) - dy);
+    const int row = number(px0, y);
+    for (int k = 0; k <= px1 - px0; ++k) body(row + k, weights[columns_[static_cast<size_t>(k)]]);
+  }
+}
+
+template <class Body>
+void TileGrid::each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const {
+  const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileReach::kTile)); };
+  const int x0 = std::max(tile_of(pixel.x - filter.x_reach()) - first.x, 0);
+  const int x1 = std::min(tile_of(pixel.x + filter.x_reach()) - first.x, columns - 1);
+  const int y0 = std::max(tile_of(pixel.y - filter.y_reach()) - first.y, 0);
+  const int y1 = std::min(tile_of(pixel.y + filter.y_reach()) - first.y, rows - 1);
+  for (int y = y0; y <= y1; ++y) {
+    for (int x = x0; x <= x1; ++x) body(static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x));
+  }
+}
 
 }  // namespace whit

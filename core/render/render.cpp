@@ -45,7 +45,7 @@ class FilmRender {
             for (size_t t = range.begin(); t != range.end(); ++t) render_tile(t);
           },
           tbb::simple_partitioner());
-      resolve_film(tiles_, first_tile_, tiles_x_, filter_, static_cast<float>(scene_.film().scale()), result_.picture);
+      resolve_film(tiles_, grid_, filter_, static_cast<float>(scene_.film().scale()), result_.picture);
     });
     for (const Worker& w : workers_) result_.statistics.add(w.statistics);
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -73,12 +73,12 @@ class FilmRender {
       return p >= 0 ? p / TileSums::kTile : -((-p + TileSums::kTile - 1) / TileSums::kTile);
     };
     if (samples_.max.x <= samples_.min.x || samples_.max.y <= samples_.min.y) return;
-    first_tile_ = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
-    tiles_x_ = tile_of(samples_.max.x - 1) - first_tile_.x + 1;
-    const int tiles_y = tile_of(samples_.max.y - 1) - first_tile_.y + 1;
-    tiles_.reserve(static_cast<size_t>(tiles_x_) * static_cast<size_t>(tiles_y));
-    for (int y = 0; y < tiles_y; ++y) {
-      for (int x = 0; x < tiles_x_; ++x) tiles_.emplace_back(first_tile_ + Vec2i(x, y), filter_);
+    grid_.first = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
+    grid_.columns = tile_of(samples_.max.x - 1) - grid_.first.x + 1;
+    grid_.rows = tile_of(samples_.max.y - 1) - grid_.first.y + 1;
+    tiles_.reserve(static_cast<size_t>(grid_.columns) * static_cast<size_t>(grid_.rows));
+    for (int y = 0; y < grid_.rows; ++y) {
+      for (int x = 0; x < grid_.columns; ++x) tiles_.emplace_back(grid_.first + Vec2i(x, y), filter_);
     }
   }
 
@@ -88,7 +88,7 @@ class FilmRender {
     Worker& worker = workers_.local();
     worker.start_clock();
     take_alpha_tests();
-    const Vec2i tile = first_tile_ + Vec2i(static_cast<int>(t) % tiles_x_, static_cast<int>(t) / tiles_x_);
+    const Vec2i tile = grid_.first + Vec2i(static_cast<int>(t) % grid_.columns, static_cast<int>(t) / grid_.columns);
     const int x0 = std::max(tile.x * TileSums::kTile, samples_.min.x);
     const int x1 = std::min((tile.x + 1) * TileSums::kTile, samples_.max.x);
     const int y0 = std::max(tile.y * TileSums::kTile, samples_.min.y);
@@ -166,8 +166,7 @@ class FilmRender {
   FilterTable filter_;
   tbb::enumerable_thread_specific<Worker> workers_;
   Box2i samples_;
-  Vec2i first_tile_{0, 0};
-  int tiles_x_ = 0;
+  TileGrid grid_;
   std::vector<TileSums> tiles_;
   std::atomic<size_t> tiles_done_{0};
   std::atomic<bool> stopped_{false};
