@@ -1,6 +1,8 @@
 // Cameras: batches of film positions to rays.
 #pragma once
 
+#include <optional>
+
 #include "core/batch/lanes.h"
 #include "core/plugin/param.h"
 
@@ -38,6 +40,9 @@ class Camera : public Plugin {
   /// Of generated rays those one pixel further along x (axis 0) or y (axis 1), through the same point of the lens: what
   /// generate() gives there. A camera that may stop the one and not the other says itself what is there instead.
   virtual void generate_neighbours(const CameraRays& rays, int axis, const Vec3Lanes& o, const Vec3Lanes& d) const;
+  /// Where points of camera space are in the picture, from (0, 0) at its upper left to (1, 1), for a camera whose picture is
+  /// a projection: that of a pinhole in the middle of the lens. After prepare().
+  virtual std::optional<Mat4d> to_ndc() const { return {}; }
 };
 
 /// The shutter parameters every camera has.

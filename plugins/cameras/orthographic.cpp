@@ -15,6 +15,7 @@ class Orthographic final : public ScreenCamera {
     screen_ = screen(1);
     return true;
   }
+  std::optional<Mat4d> to_ndc() const override { return projection(screen_, true); }
 
   void generate(const CameraRays& rays) const override {
     const Vec3Lanes o = rays.o, d = rays.d;

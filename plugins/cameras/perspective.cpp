@@ -20,6 +20,7 @@ class Perspective final : public ScreenCamera {
     screen_ = screen(std::tan(degrees * detail::kPiD / 180));
     return true;
   }
+  std::optional<Mat4d> to_ndc() const override { return projection(screen_, false); }
 
   void generate(const CameraRays& rays) const override {
     const Vec3Lanes o = rays.o, d = rays.d;

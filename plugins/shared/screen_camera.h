@@ -54,6 +54,22 @@ class ScreenCamera : public Camera {
     return {Vec2f(center * scale), Vec2f(step * scale), Vec2f(size * 0.5)};
   }
 
+  /// Camera::to_ndc() by a map of the film, which is on the plane z = 1 or, for parallel rays, anywhere.
+  Mat4d projection(const Screen& s, bool parallel) const {
+    const Vec2d size(film.resolution);
+    Mat4d m;
+    m[0][0] = 1 / (static_cast<double>(s.step.x) * size.x);
+    m[1][1] = 1 / (static_cast<double>(s.step.y) * size.y);
+    const int row = parallel ? 3 : 2;  // of what is divided by w
+    m[row][0] =
+        (static_cast<double>(s.middle.x) - static_cast<double>(s.center.x) / static_cast<double>(s.step.x)) / size.x;
+    m[row][1] =
+        (static_cast<double>(s.middle.y) - static_cast<double>(s.center.y) / static_cast<double>(s.step.y)) / size.y;
+    if (parallel) return m;
+    m[2][2] = m[3][3] = 0, m[2][3] = m[3][2] = 1;
+    return m;
+  }
+
  private:
   void window(double out[4]) const {
     if (screen_window.given) {
