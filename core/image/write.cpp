@@ -140,6 +140,8 @@ bool is_linear_format(const std::string& path) {
   return e == ".exr" || e == ".pfm";
 }
 
+bool holds_layers(const std::string& path) { return extension(path) == ".exr"; }
+
 WriteResult write_image(const std::string& path, const OutputImage& image, const WriteOptions& options) {
   WriteResult result;
   std::string reason = extension_problem(path);

@@ -4,6 +4,8 @@
 // .png .tga .jpg .jpeg .tif .tiff take values that are display-encoded already (core/color), in [0, 1].
 #pragma once
 
+#include <Imath/ImathMatrix.h>
+
 #include <span>
 #include <string>
 #include <variant>
@@ -26,6 +28,12 @@ struct OutputMetadata {
   std::variant<std::string, float, int> value;
 };
 
+/// A matrix in the header, for row vectors: "worldToCamera", "worldToNDC".
+struct OutputMatrix {
+  std::string name;
+  Imath::M44f value;
+};
+
 /// A picture to write, by reference: the arrays must outlive the call.
 struct OutputImage {
   int width = 0, height = 0;            ///< Size of the data window: the pixels there are.
@@ -34,6 +42,7 @@ struct OutputImage {
   std::span<const float> rgb{};         ///< height x width x 3, top row first.
   std::vector<OutputLayer> layers{};    ///< .exr only; others leave them out.
   std::vector<OutputMetadata> metadata{};
+  std::vector<OutputMatrix> matrices{};  ///< .exr only, as layers.
 };
 
 struct WriteOptions {
@@ -51,6 +60,9 @@ struct WriteResult {
 
 /// True for .exr and .pfm, whose values are linear; the other formats want display-encoded ones.
 bool is_linear_format(const std::string& path);
+
+/// True for .exr, which holds any number of layers.
+bool holds_layers(const std::string& path);
 
 /// Writes the picture to `path`, whose extension (any case) chooses the format.
 ///

@@ -7,6 +7,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfIntAttribute.h>
+#include <OpenEXR/ImfMatrixAttribute.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
@@ -66,6 +67,7 @@ Imf::Header header(const OutputImage& image, const std::vector<Channel>& all) {
     if (const auto* real = std::get_if<float>(&m.value)) header.insert(m.name, Imf::FloatAttribute(*real));
     if (const auto* whole = std::get_if<int>(&m.value)) header.insert(m.name, Imf::IntAttribute(*whole));
   }
+  for (const OutputMatrix& m : image.matrices) header.insert(m.name, Imf::M44fAttribute(m.value));
   return header;
 }
 
