@@ -53,6 +53,7 @@ class Light : public Plugin {
   static constexpr const char* kCategory = "light";
   /// Light-to-world, set by the builder before prepare().
   Mat4d light_to_world;
+  std::string group;  ///< "lightgroup".
 
   /// By what it says below: which lights go when --without switches a kind of them off.
   EffectSet effects() const override {
@@ -89,6 +90,8 @@ class Light : public Plugin {
   /// angle times area, lengths as in render space. Asked after prepare(), and only where lights are chosen by it; may
   /// read pictures.
   virtual double power(double scene_radius) const = 0;
+  /// The group in whose layer its light is, where AOVs ask for groups; "" for none.
+  virtual const std::string& light_group() const { return group; }
   /// True when the light gives nothing anywhere (power 0), so that the plan drops it.
   virtual bool is_black() const { return false; }
 };
@@ -98,11 +101,19 @@ class Light : public Plugin {
 class AreaLight : public Plugin {
  public:
   static constexpr const char* kCategory = "area light";
+  std::string group;  ///< "lightgroup".
   /// Emitted radiance, the same in every direction of the emitting side(s).
   virtual RGB radiance() const = 0;
   virtual bool two_sided() const = 0;
   /// As Light::sample_count().
   virtual int sample_count() const { return 1; }
 };
+
+/// The parameter that all lights have.
+template <class AnyLight = Light>
+auto lightgroup_param() {
+  return param(&AnyLight::group, "lightgroup", "", Unit::None,
+               "Name of the group in whose layer its light is, with --aov lightgroups; by default in none.");
+}
 
 }  // namespace whit

@@ -483,6 +483,15 @@ struct Kind<Point3List> : ListKind<Point3List, ParamType::Point3, 3> {};
 template <>
 struct Kind<Vector3List> : ListKind<Vector3List, ParamType::Vector3, 3> {};
 template <>
+struct Kind<StringList> {
+  static constexpr ParamType accepts[] = {ParamType::String};
+  static std::string text(const StringList&) { return {}; }
+  static bool read(const Parameter& p, const BindContext&, const Range&, StringList& out) {
+    out.values = p.strings(), out.where = p.values_at, out.given = true;
+    return true;
+  }
+};
+template <>
 struct Kind<NormalList> : ListKind<NormalList, ParamType::Normal3, 3> {};
 
 }  // namespace
@@ -523,6 +532,7 @@ template struct Binding<Point2List>;
 template struct Binding<Point3List>;
 template struct Binding<Vector3List>;
 template struct Binding<NormalList>;
+template struct Binding<StringList>;
 
 bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<std::string>& choices, Choice& out) {
   const auto& v = p.strings();

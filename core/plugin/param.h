@@ -74,6 +74,7 @@ struct Point3List : List<double> {};
 struct Vector3List : List<double> {};
 struct NormalList : List<double> {};
 struct IntegerList : List<int32_t> {};
+struct StringList : List<std::string> {};
 /// Pairs of surface parameters, which pbrt-v3 takes as floats or as point2 alike. Bound in shape.cpp.
 struct UvList : List<double> {};
 

@@ -59,7 +59,7 @@ std::optional<Emission> emission_of(const BuildContext& context, const ShapeDesc
     context.diagnostics.warning(description.where, "a curve cannot light other surfaces", "it glows, and that is all");
   }
   // A curve always faces the ray, so it has no back that could be dark.
-  return Emission{light->radiance(), light->two_sided() || is_curve, light->sample_count()};
+  return Emission{light->radiance(), light->two_sided() || is_curve, light->sample_count(), &light->group};
 }
 
 void build_lights(const BuildContext& context, std::span<const LitShape> lit, Scene& scene) {

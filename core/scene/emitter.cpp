@@ -79,6 +79,7 @@ class Emitter : public Light {
   bool is_two_sided() const override { return emission_.two_sided; }
   int sample_count() const override { return emission_.samples; }
   double power(double) const override { return 0; }
+  const std::string& light_group() const override { return *emission_.group; }
 
  protected:
   double power_of_area(double area) const {

@@ -11,7 +11,8 @@ namespace whit {
 struct Emission {
   RGB radiance{0.0f};
   bool two_sided = false;
-  int samples = 1;  ///< Light::sample_count().
+  int samples = 1;           ///< Light::sample_count().
+  const std::string* group;  ///< Light::light_group(), the area light's.
 };
 
 /// One emitting primitive of a shape as a light. Of a curve, which can be seen but not sampled, `prim` says nothing, nor

@@ -27,7 +27,8 @@ const Register<Diffuse> diffuse{
     param(&Diffuse::twosided, "twosided", false, Unit::None, "Radiates from the back as well."),
     param(&Diffuse::samples, "samples", 1, Unit::None,
           "How often directlighting samples it at each point; of no effect on other integrators.", {1, 1e6}),
-    param(&Diffuse::nsamples, "nsamples", 1, Unit::None, "The same by its older name.", {1, 1e6})};
+    param(&Diffuse::nsamples, "nsamples", 1, Unit::None, "The same by its older name.", {1, 1e6}),
+    lightgroup_param<AreaLight>()};
 
 }  // namespace
 }  // namespace whit

@@ -69,7 +69,8 @@ const Register<DistantLight> distant{
     param(&DistantLight::L, "L", RGB{1.0f}, Unit::Irradiance, "Irradiance on a surface that faces the light."),
     param(&DistantLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
     param(&DistantLight::from, "from", Point{}, Unit::Length, "Where the light comes from."),
-    param(&DistantLight::to, "to", Point{{0, 0, 1}}, Unit::Length, "Where the light goes.")};
+    param(&DistantLight::to, "to", Point{{0, 0, 1}}, Unit::Length, "Where the light goes."),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

@@ -40,10 +40,13 @@ class GoniometricLight final : public PointSource {
 };
 
 const Register<GoniometricLight> goniometric{
-    "goniometric", "A point whose intensity is measured: a picture of all directions.", intensity_param(),
+    "goniometric",
+    "A point whose intensity is measured: a picture of all directions.",
+    intensity_param(),
     intensity_scale_param(),
     param(&GoniometricLight::mapname, "mapname", Unit::None,
-          "Lat-long map of factors of I, +y of light space at its top. Without one, the same in all directions.")};
+          "Lat-long map of factors of I, +y of light space at its top. Without one, the same in all directions."),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

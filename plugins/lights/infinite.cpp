@@ -41,7 +41,8 @@ const Register<InfiniteLight> infinite{
           "Lat-long map; +z of light space is at its top. Without one, the same in all directions."),
     param(&InfiniteLight::samples, "samples", 1, Unit::None,
           "How often directlighting samples it at each point; of no effect on other integrators.", {1, 1e6}),
-    param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "The same by its older name.", {1, 1e6})};
+    param(&InfiniteLight::nsamples, "nsamples", 1, Unit::None, "The same by its older name.", {1, 1e6}),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

@@ -61,11 +61,13 @@ class PointLight final : public Light {
 };
 
 const Register<PointLight> point{
-    "point", "A point that radiates evenly in all directions.",
+    "point",
+    "A point that radiates evenly in all directions.",
     param(&PointLight::I, "I", RGB{1.0f}, Unit::Intensity, "Intensity: radiance at distance 1."),
     param(&PointLight::scale, "scale", RGB{1.0f}, Unit::None, "Factor of I."),
     param(&PointLight::from, "from", Point{}, Unit::Length,
-          "Position, from where the transform takes the origin; not turned or scaled by it (as in pbrt-v3).")};
+          "Position, from where the transform takes the origin; not turned or scaled by it (as in pbrt-v3)."),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

@@ -69,7 +69,8 @@ const Register<ProjectionLight> projection{
     intensity_scale_param(),
     param(&ProjectionLight::fov, "fov", 45.0f, Unit::Degrees, "Angle of the picture's shorter side.", kFullAngle),
     param(&ProjectionLight::mapname, "mapname", Unit::None,
-          "The picture, its top row towards -y of light space. Without one, a white square.")};
+          "The picture, its top row towards -y of light space. Without one, a white square."),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

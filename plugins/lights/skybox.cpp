@@ -82,7 +82,8 @@ const Register<Skybox> skybox{"skybox",
                               param(&Skybox::scale, "scale", RGB{1.0f}, Unit::None, "Factor of L."),
                               param(&Skybox::center, "center", Point{}, Unit::Length, "Centre of the sphere."),
                               param(&Skybox::radius, "radius", 0.0f, Unit::Length,
-                                    "Radius of the sphere; 0 is infinitely far away.", kNonNegative)};
+                                    "Radius of the sphere; 0 is infinitely far away.", kNonNegative),
+                              lightgroup_param()};
 
 }  // namespace
 }  // namespace whit

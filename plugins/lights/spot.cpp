@@ -66,7 +66,8 @@ const Register<SpotLight> spot{
     param(&SpotLight::to, "to", Point{{0, 0, 1}}, Unit::Length, "A point on the cone's axis."),
     param(&SpotLight::coneangle, "coneangle", 30.0f, Unit::Degrees, "Angle between the cone's axis and its edge."),
     param(&SpotLight::conedeltaangle, "conedeltaangle", 5.0f, Unit::Degrees,
-          "Angle inside the edge over which the light fades.")};
+          "Angle inside the edge over which the light fades."),
+    lightgroup_param()};
 
 }  // namespace
 }  // namespace whit
