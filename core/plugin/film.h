@@ -17,6 +17,7 @@ class Film : public Plugin {
   virtual const std::string& file_name() const = 0;
   virtual const std::string& view() const = 0;  ///< Display view of the 8-bit picture; "" for the default.
   virtual double exposure() const = 0;          ///< Stops, before the view.
+  virtual const StringList& aovs() const = 0;   ///< What else the file holds, by name.
 };
 
 }  // namespace whit

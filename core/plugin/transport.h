@@ -40,6 +40,7 @@ struct Seen {
   const int32_t* lane = nullptr;   ///< Of the rays, or of the points.
   RGBLanes radiance;               ///< Times the weight, where the rays carry densities.
   const int32_t* light = nullptr;  ///< The light's number, -1 for one that is not sampled; null when they are several.
+  const RGBLanes* environments = nullptr;  ///< The shares of the scene's lights at infinity; null unless asked for.
 };
 
 /// A sample of light for every point: of one light, or of one that was chosen for each point.
@@ -67,9 +68,8 @@ struct Onward {
   explicit operator bool() const { return static_cast<bool>(wi); }
 };
 
-/// Rays::via: how the sample left its first surface.
+/// Rays::via: how the sample left its first surface. Of sampled directions, by those that are not of a specular lobe.
 enum class Via : int32_t { Camera, Mirrored, Refracted, Sampled };
-constexpr int32_t via_of(Onward::Kind kind) { return 1 + static_cast<int32_t>(kind); }
 
 /// Weight of a sample of density `pdf`, where another way to come by the same light has the density `other`.
 using Heuristic = float (*)(float pdf, float other);

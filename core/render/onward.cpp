@@ -81,11 +81,21 @@ SenderPair find_senders(const Points& points, const Onward& a, const Onward& b, 
   return found;
 }
 
-/// How rays left their samples' first surface: by Onward::Kind, and by nothing at the camera.
+/// How rays left their samples' first surface.
 void fill_via(const Points& points, const Onward& onward, const Senders& senders, const Rays& out) {
-  const bool first = points.rays.depth == 0;
-  const auto now = via_of(onward.kind);
-  for_lanes(senders.n, [&](int k) { out.via[senders.to[k]] = first ? now : points.rays.via[senders.point[k]]; });
+  const ShadingBatch& at = points.at;
+  for (int k = 0; k < senders.n; ++k) {
+    const int i = senders.point[k];
+    Via via = static_cast<Via>(points.rays.via[i]);
+    if (points.rays.depth == 0) {
+      const bool sampled = onward.kind == Onward::Kind::Sampled;
+      const bool specular = !sampled || onward.pdf[i] == std::numeric_limits<float>::infinity();
+      const bool refracted = sampled ? (dot(at.ng[i], at.wo[i]) > 0) != (dot(at.ng[i], onward.wi[i]) > 0)
+                                     : onward.kind == Onward::Kind::Refracted;
+      via = !specular ? Via::Sampled : refracted ? Via::Refracted : Via::Mirrored;
+    }
+    out.via[senders.to[k]] = static_cast<int32_t>(via);
+  }
 }
 
 /// Hashed into a ray's branch, so that the branches of a sample draw different numbers. A path has no branches.

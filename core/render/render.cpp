@@ -26,10 +26,9 @@ constexpr int kChunk = 2048;
 class FilmRender {
  public:
   FilmRender(const Scene& scene, const RenderOptions& options)
-      : scene_(scene),
-        options_(options),
-        filter_(scene.filter()),
-        workers_([&] { return Worker(scene, options.time_stages); }) {}
+      : scene_(scene), options_(options), filter_(scene.filter()), aovs_(scene, options.aovs), workers_([&] {
+          return Worker(scene, options.time_stages, aovs_.any() ? &aovs_ : nullptr);
+        }) {}
 
   RenderResult run() {
     prepare();
@@ -46,6 +45,9 @@ class FilmRender {
           },
           tbb::simple_partitioner());
       resolve_film(tiles_, grid_, filter_, static_cast<float>(scene_.film().scale()), result_.picture);
+      if (!aovs_.any()) return;
+      result_.aovs =
+          resolve_aovs(scene_, aovs_, options_.aovs.place, aov_tiles_, grid_, filter_, result_.picture.window);
     });
     for (const Worker& w : workers_) result_.statistics.add(w.statistics);
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -76,9 +78,14 @@ class FilmRender {
     grid_.first = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
     grid_.columns = tile_of(samples_.max.x - 1) - grid_.first.x + 1;
     grid_.rows = tile_of(samples_.max.y - 1) - grid_.first.y + 1;
-    tiles_.reserve(static_cast<size_t>(grid_.columns) * static_cast<size_t>(grid_.rows));
+    const size_t tiles = static_cast<size_t>(grid_.columns) * static_cast<size_t>(grid_.rows);
+    tiles_.reserve(tiles);
+    if (aovs_.any()) aov_tiles_.reserve(tiles);
     for (int y = 0; y < grid_.rows; ++y) {
-      for (int x = 0; x < grid_.columns; ++x) tiles_.emplace_back(grid_.first + Vec2i(x, y), filter_);
+      for (int x = 0; x < grid_.columns; ++x) {
+        tiles_.emplace_back(grid_.first + Vec2i(x, y), filter_);
+        if (aovs_.any()) aov_tiles_.emplace_back(aovs_, grid_.first + Vec2i(x, y), filter_);
+      }
     }
   }
 
@@ -100,19 +107,18 @@ class FilmRender {
       for (int x = x0; x < x1; ++x) {
         for (int s = 0; s < scene_.samples_per_pixel; ++s) {
           px[n] = x, py[n] = y, index[n] = static_cast<uint32_t>(s);
-          if (++n == kChunk) render_samples(worker, tiles_[t], std::exchange(n, 0), px, py, index);
+          if (++n == kChunk) render_samples(worker, t, std::exchange(n, 0), px, py, index);
         }
       }
     }
-    if (n > 0) render_samples(worker, tiles_[t], n, px, py, index);
+    if (n > 0) render_samples(worker, t, n, px, py, index);
     worker.stop_clock();
     worker.statistics.alpha_tests += take_alpha_tests();
     if (options_.tile_done) preview_tile(tiles_[t], {{x0, y0}, {x1, y1}});
     report_progress();
   }
 
-  void render_samples(Worker& worker, TileSums& sums, int n, const int32_t* px, const int32_t* py,
-                      const uint32_t* index) {
+  void render_samples(Worker& worker, size_t tile, int n, const int32_t* px, const int32_t* py, const uint32_t* index) {
     ArenaScope scope(worker.arena);
     generate_camera_rays(worker, n, px, py, index);
     trace_chunk(worker);
@@ -121,7 +127,8 @@ class FilmRender {
     for (int i = 0; i < n; ++i) {
       if (!usable[i]) worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
     }
-    sums.add(n, c.film_x, c.film_y, c.radiance, usable);
+    tiles_[tile].add(n, c.film_x, c.film_y, c.radiance, usable);
+    if (aovs_.any()) aov_tiles_[tile].add(c, usable);
   }
 
   /// Limits the samples' luminance and weighs them as the camera says. Returns which of them are numbers.
@@ -164,10 +171,12 @@ class FilmRender {
   const Scene& scene_;
   const RenderOptions& options_;
   FilterTable filter_;
+  const AovPlan aovs_;
   tbb::enumerable_thread_specific<Worker> workers_;
   Box2i samples_;
   TileGrid grid_;
   std::vector<TileSums> tiles_;
+  std::vector<AovTile> aov_tiles_;  ///< As many, or none.
   std::atomic<size_t> tiles_done_{0};
   std::atomic<bool> stopped_{false};
   std::mutex progress_mutex_;

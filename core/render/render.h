@@ -4,6 +4,7 @@
 #include <functional>
 #include <span>
 
+#include "core/render/aov_film.h"
 #include "core/render/film_buffer.h"
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"
@@ -14,6 +15,7 @@ struct RenderOptions {
   int threads = 0;                ///< 0: one per core.
   bool crop_given = false;        ///< crop overrides the film's.
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
+  AovRequest aovs;                ///< What the picture holds beside its colours.
   bool time_stages = false;       ///< Fills the statistics' seconds by stage.
   /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
   std::function<bool(double)> progress;
@@ -24,6 +26,7 @@ struct RenderOptions {
 
 struct RenderResult {
   Picture picture;
+  AovPicture aovs;  ///< What RenderOptions::aovs asks for, of the same window.
   RenderStatistics statistics;
   double seconds = 0;  ///< Of the render loop, wall clock.
   int threads = 1;

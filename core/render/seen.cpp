@@ -4,6 +4,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/gather.h"
+#include "core/render/aov_plan.h"
 #include "core/render/tracer.h"
 
 namespace whit {
@@ -22,20 +23,25 @@ Seen Tracer::escaped(const Rays& rays, const Hits& hits, Heuristic heuristic) {
   gather(lanes, n, rays.d, d);
   seen = {n, lanes, arena_.rgb(n), nullptr};
   for_lanes(n, [&](int i) { seen.radiance.set(i, RGB(0.0f)); });
-  if (!heuristic || !rays.pdf) {
+  const bool weighed = heuristic && rays.pdf, apart = worker_.aovs && !worker_.aovs->light_groups.empty();
+  if (!weighed && !apart) {
     for (const SceneEnvironment& e : scene_.environments) e.light->add_escaped(n, o, d, seen.radiance, nullptr);
     return seen;
   }
-  float* const pdf = arena_.floats(n);
-  const RGBLanes one = arena_.rgb(n);
-  for (const SceneEnvironment& e : scene_.environments) {
+  float* const pdf = weighed ? arena_.floats(n) : nullptr;
+  RGBLanes* const shares = apart ? arena_.alloc<RGBLanes>(static_cast<int>(scene_.environments.size())) : nullptr;
+  seen.environments = shares;
+  RGBLanes one = arena_.rgb(n);
+  for (size_t k = 0; k < scene_.environments.size(); ++k) {
+    const SceneEnvironment& e = scene_.environments[k];
+    if (apart) shares[k] = one = arena_.rgb(n);
     for_lanes(n, [&](int i) { one.set(i, RGB(0.0f)); });
     e.light->add_escaped(n, o, d, one, pdf);
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; weighed && i < n; ++i) {
       const float chosen = e.number < 0 ? 0.0f : expected_samples(e.number, rays.from[lanes[i]]);
-      const float weight = heuristic(rays.pdf[lanes[i]], chosen * pdf[i]);
-      seen.radiance.set(i, seen.radiance[i] + one[i] * weight);
+      one.set(i, one[i] * heuristic(rays.pdf[lanes[i]], chosen * pdf[i]));
     }
+    for_lanes(n, [&](int i) { seen.radiance.set(i, seen.radiance[i] + one[i]); });
   }
   return seen;
 }

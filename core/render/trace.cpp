@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/fastmath.h"
+#include "core/render/aov_transport.h"
 #include "core/render/timed.h"
 #include "core/render/tracer.h"
 #include "core/scene/motion.h"
@@ -22,6 +23,18 @@ SampleChunk allocate_chunk(Worker& worker, int n) {
   c.radiance = arena.rgb(n);
   for_lanes(n, [&](int i) { c.radiance.r[i] = c.radiance.g[i] = c.radiance.b[i] = 0; });
   return c;
+}
+
+/// Arrays for the AOVs' values, as of samples that meet nothing.
+void allocate_aovs(const AovPlan& plan, SampleChunk& c, Arena& arena) {
+  const auto columns = static_cast<int>(plan.columns.size());
+  c.aovs = arena.alloc<float*>(columns);
+  for (int k = 0; k < columns; ++k) {
+    c.aovs[k] = arena.floats(c.n);
+    std::fill_n(c.aovs[k], c.n, plan.columns[static_cast<size_t>(k)]->nothing);
+  }
+  c.met = arena.alloc<uint8_t>(c.n);
+  std::fill_n(c.met, c.n, uint8_t{0});
 }
 
 /// Times in [0,1] over the transform times, from the shutter's interval in seconds.
@@ -114,6 +127,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   const Scene& scene = worker.scene;
   worker.chunk = allocate_chunk(worker, n);
   SampleChunk& c = worker.chunk;
+  if (worker.aovs) allocate_aovs(*worker.aovs, c, worker.arena);
   uint32_t* stream = worker.arena.alloc<uint32_t>(n);
   for_lanes(n, [&](int i) { c.px[i] = px[i], c.py[i] = py[i], c.index[i] = index[i], stream[i] = 0; });
   const SampleKeys keys{n, c.px, c.py, c.index, stream};
@@ -186,7 +200,10 @@ void trace_chunk(Worker& worker, const Wrap& wrap) {
   std::optional<TimedTransport> timed;
   if (worker.clock()) timed.emplace(tracer, *worker.clock());
   const std::unique_ptr<Transport> wrapped = wrap ? wrap(tracer) : nullptr;
-  Transport& transport = wrapped ? *wrapped : timed ? static_cast<Transport&>(*timed) : tracer;
+  Transport& watched = wrapped ? *wrapped : timed ? static_cast<Transport&>(*timed) : tracer;
+  std::optional<AovTransport> aovs;
+  if (worker.aovs) aovs.emplace(watched, worker.scene, *worker.aovs, worker.chunk);
+  Transport& transport = aovs ? static_cast<Transport&>(*aovs) : watched;
   // A depth is done before the next begins, so that batches stay full, but for rays that multiply: a full batch of the
   // next depth goes first.
   std::vector<Worker::Cursor>& stack = worker.cursors;

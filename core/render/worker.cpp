@@ -1,5 +1,7 @@
 #include "core/render/worker.h"
 
+#include "core/render/aov_plan.h"
+
 namespace whit {
 
 DimensionLayout::DimensionLayout(const Scene& scene) {
@@ -32,6 +34,7 @@ RayQueue& Worker::level(int depth) {
     carried.time = scene.plan.live(Effect::MotionBlur);
     carried.densities = integrator.keeps_densities();
     carried.eta2 = integrator.keeps_densities() && scene.plan.live(Effect::Refraction);
+    carried.via = aovs && aovs->parts;
     levels_.emplace_back(next, carried);
   }
   return levels_[static_cast<size_t>(depth)];

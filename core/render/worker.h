@@ -32,14 +32,20 @@ struct SampleChunk {
   float* time = nullptr;        ///< In [0,1] over the transform times; null when nothing moves.
   float* ray_weight = nullptr;  ///< Of the camera.
   RGBLanes radiance;
+  float** aovs = nullptr;  ///< The arrays of AovPlan::columns; null when nobody asks for AOVs.
+  uint8_t* met = nullptr;  ///< Likewise: 1 where the camera ray meets a surface that AOVs ask for.
 };
+
+struct AovPlan;
 
 /// Everything a worker thread needs and no other may touch.
 class Worker {
  public:
-  Worker(const Scene& of, bool time_stages) : scene(of), layout(of), timed_(time_stages) {}
+  Worker(const Scene& of, bool time_stages, const AovPlan* planned_aovs = nullptr)
+      : scene(of), aovs(planned_aovs), layout(of), timed_(time_stages) {}
 
   const Scene& scene;
+  const AovPlan* const aovs;  ///< Null when nobody asks for AOVs.
   const DimensionLayout layout;
   Arena arena;
   SampleChunk chunk;

@@ -1,5 +1,7 @@
 #include "core/session/output.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <filesystem>
 #include <future>
@@ -27,6 +29,26 @@ void choose_names(const OutputRequest& request, const Film& film, OutputPlan& pl
                             ? request.display
                             : std::filesystem::path(plan.main_file).replace_extension(".png").string();
   }
+}
+
+/// Which AOVs the main file is to hold, and whether it can.
+void choose_aovs(const OutputRequest& request, const Film& film, OutputPlan& plan) {
+  const bool by_film = request.aovs.empty();
+  const StringList& asked = film.aovs();
+  plan.aovs = by_film ? std::vector<std::string>(asked.values.begin(), asked.values.end()) : request.aovs;
+  if (plan.aovs == std::vector<std::string>{"none"}) plan.aovs.clear();
+  std::string problem = unknown_aov(plan.aovs);
+  if (problem.empty() && !plan.aovs.empty() && !holds_layers(plan.main_file))
+    problem = fmt::format("\"{}\" cannot hold AOVs: only .exr files can; --aov none leaves them out", plan.main_file);
+  if (problem.empty()) return;
+  if (by_film) plan.said.error(asked.where, problem);
+  else plan.said.add({Severity::Error, ErrorClass::Usage, {}, "--aov: " + problem, ""});
+}
+
+void add_aovs(const AovPicture& aovs, OutputImage& image) {
+  for (const AovPicture::Channel& c : aovs.channels) image.layers.push_back({c.name, c.values, c.full_float});
+  image.metadata.insert(image.metadata.end(), aovs.header.begin(), aovs.header.end());
+  image.matrices = aovs.matrices;
 }
 
 /// The first file that cannot be written is reported.
@@ -59,8 +81,9 @@ void make_display(const OutputRequest& request, const Bound<Film>& bound, Output
 }
 
 /// Writes one file; what there is to say of it.
-Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Picture& picture,
+Diagnostics write_file(const std::string& path, const OutputPlan& plan, const RenderResult& result,
                        const std::vector<OutputMetadata>& metadata) {
+  const Picture& picture = result.picture;
   std::vector<float> encoded;
   if (!is_linear_format(path)) {
     encoded = picture.rgb;
@@ -68,12 +91,13 @@ Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Pi
   }
   OutputImage image = to_output(picture, encoded.empty() ? picture.rgb : encoded);
   image.metadata = metadata;
+  if (holds_layers(path)) add_aovs(result.aovs, image);
   WriteOptions options;
   options.full_float = plan.full_float;
-  WriteResult result = write_image(path, image, options);
+  WriteResult written = write_image(path, image, options);
   Diagnostics said;
-  if (!result.warning.empty()) said.warning({}, std::move(result.warning));
-  if (!result.ok()) said.file_error({}, std::move(result.error));
+  if (!written.warning.empty()) said.warning({}, std::move(written.warning));
+  if (!written.ok()) said.file_error({}, std::move(written.error));
   return said;
 }
 
@@ -83,21 +107,22 @@ OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film) {
   OutputPlan plan;
   plan.full_float = request.full_float;
   choose_names(request, *film.plugin, plan);
-  check_files(request, film, plan);
+  choose_aovs(request, *film.plugin, plan);
+  if (!plan.said.has_errors()) check_files(request, film, plan);
   if (!plan.said.has_errors()) make_display(request, film, plan);
   return plan;
 }
 
-WrittenOutput write_output(const OutputPlan& plan, const Picture& picture,
+WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
                            const std::vector<OutputMetadata>& metadata) {
   const auto start = std::chrono::steady_clock::now();
   WrittenOutput out;
   // Compressing is most of it, and there is more than one core.
   std::future<Diagnostics> display;
   if (!plan.display_file.empty()) {
-    display = std::async(std::launch::async, [&] { return write_file(plan.display_file, plan, picture, metadata); });
+    display = std::async(std::launch::async, [&] { return write_file(plan.display_file, plan, result, metadata); });
   }
-  out.said = write_file(plan.main_file, plan, picture, metadata);
+  out.said = write_file(plan.main_file, plan, result, metadata);
   if (display.valid()) out.said.append(display.get());
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;

@@ -22,6 +22,7 @@ struct OutputRequest {
   std::string view, ocio;          ///< --view, --ocio; "" takes the film's or the default.
   std::optional<double> exposure;  ///< --exposure; none takes the film's.
   bool full_float = false;
+  std::vector<std::string> aovs;  ///< --aov; none takes the film's, "none" alone writes none.
 };
 
 /// What a render writes and how. Where `said` has an error nothing should be rendered: it is at the Film statement if
@@ -31,6 +32,7 @@ struct OutputPlan {
   std::string display_file;  ///< The PNG beside a linear file; "" when there is none.
   bool full_float = false;
   std::unique_ptr<const DisplayTransform> display;
+  std::vector<std::string> aovs;  ///< What the main file holds beside the colours: names that there are.
   Diagnostics said;
 };
 
@@ -42,6 +44,7 @@ struct WrittenOutput {
   Diagnostics said;
   double seconds = 0;
 };
-WrittenOutput write_output(const OutputPlan& plan, const Picture& picture, const std::vector<OutputMetadata>& metadata);
+WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
+                           const std::vector<OutputMetadata>& metadata);
 
 }  // namespace whit

@@ -19,6 +19,7 @@ class ImageFilm final : public Film {
   std::string file;
   std::string display_view;
   float stops = 0;
+  StringList asked_aovs;
 
   void check(Diagnostics& d, SourcePos) override {
     if (!crop.given) return;
@@ -46,6 +47,7 @@ class ImageFilm final : public Film {
   const std::string& file_name() const override { return file; }
   const std::string& view() const override { return display_view; }
   double exposure() const override { return stops; }
+  const StringList& aovs() const override { return asked_aovs; }
 };
 
 constexpr Range kResolution{1, 65536};
@@ -66,7 +68,9 @@ const Register<ImageFilm> image{
     param(&ImageFilm::display_view, "view", "", Unit::None,
           "Display view of the 8-bit picture: sRGB, \"ACES SDR\", exposure=E, or one of the OCIO config's. By default "
           "sRGB."),
-    param(&ImageFilm::stops, "exposure", 0.0f, Unit::None, "Stops by which the 8-bit picture is brightened.")};
+    param(&ImageFilm::stops, "exposure", 0.0f, Unit::None, "Stops by which the 8-bit picture is brightened."),
+    param(&ImageFilm::asked_aovs, "aovs", Unit::None,
+          "What an .exr holds beside its colours, like \"N\" \"albedo\"; `whit help aovs` lists all.")};
 
 }  // namespace
 }  // namespace whit

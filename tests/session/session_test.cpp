@@ -79,7 +79,7 @@ TEST(Session, PicturesAreWrittenUnderBothNames) {
   const OutputPlan output = plan_output(request, planned.bound.film);
   const RenderedWorld rendered = render_world(build_world(std::move(planned)));
   EXPECT_TRUE(rendered.said.all().empty());
-  EXPECT_TRUE(write_output(output, rendered.result.picture, {}).said.all().empty());
+  EXPECT_TRUE(write_output(output, rendered.result, {}).said.all().empty());
   EXPECT_TRUE(std::filesystem::exists(request.outfile));
   EXPECT_TRUE(std::filesystem::exists(test::temp_folder() + "/both.png"));
 }

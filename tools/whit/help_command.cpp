@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/plugin/registry.h"
+#include "core/render/aovs.h"
 #include "parser/statements.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/json.h"
@@ -30,7 +31,9 @@ void print_overview() {
     fmt::print("  {:<18} {}\n", category, names);
   }
   fmt::print(
-      "\nwhit help statement shows the statements of a scene file, whit help effects what --without knows; "
+      "\nwhit help statement shows the statements of a scene file, whit help effects what --without knows, whit help "
+      "aovs "
+      "what --aov does; "
       "--json prints all this for machines\n");
 }
 
@@ -87,6 +90,20 @@ void print_effects() {
   });
 }
 
+/// Channels of an AOV, those of a layer together: "N.X .Y .Z".
+std::string channels_text(const AovRow& row) {
+  std::string text = row.by_light_group ? "lightgroup.NAME" : "";
+  for (const std::string& channel : row.channels) {
+    const size_t dot = text.empty() ? 0 : channel.find('.');
+    text += fmt::format("{}{}", text.empty() ? "" : " ", channel.substr(dot == std::string::npos ? 0 : dot));
+  }
+  return text;
+}
+
+void print_aovs() {
+  for (const AovRow& row : all_aovs()) fmt::print("{:<12} {}\n    {}\n", row.name, channels_text(row), row.doc);
+}
+
 // ---- For machines ----
 
 Json describe(const ParamSpec& p) {
@@ -121,14 +138,19 @@ Json describe(const StatementRow& s) {
 }
 
 void print_json() {
-  Json::Array plugins, rows, effects;
+  Json::Array plugins, rows, effects, aovs;
   for (const PluginInfo* p : list_plugins()) plugins.push_back(describe(*p));
   for (const StatementRow& s : statements()) rows.push_back(describe(s));
   for_effects(EffectSet::all(), [&](Effect e) {
     const EffectInfo& info = effect_info(e);
     effects.push_back(Json::Object{{"name", info.name}, {"doc", info.doc}, {"without", info.off}});
   });
-  fmt::print("{}\n", to_text(Json::Object{{"plugins", plugins}, {"statements", rows}, {"effects", effects}}));
+  for (const AovRow& row : all_aovs()) {
+    aovs.push_back(Json::Object{
+        {"name", row.name}, {"channels", channels_text(row)}, {"pixel", pixel_text(row.pixel)}, {"doc", row.doc}});
+  }
+  fmt::print("{}\n",
+             to_text(Json::Object{{"plugins", plugins}, {"statements", rows}, {"effects", effects}, {"aovs", aovs}}));
 }
 
 std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }
@@ -141,7 +163,7 @@ int help_command(const Arguments& args) {
     return kDone;
   }
   const std::pair<const char*, void (*)()> topics[] = {
-      {"--json", print_json}, {"statement", print_statements}, {"effects", print_effects}};
+      {"--json", print_json}, {"statement", print_statements}, {"effects", print_effects}, {"aovs", print_aovs}};
   for (const auto& [topic, print] : topics) {
     if (args[0] != topic) continue;
     print();
@@ -153,7 +175,7 @@ int help_command(const Arguments& args) {
   if (list_plugins(category).empty() && args.size() > 1) category += " " + args[1], used = 2;
   const auto plugins = list_plugins(category);
   if (plugins.empty()) {
-    std::vector<std::string> known{"statement", "effects"};
+    std::vector<std::string> known{"statement", "effects", "aovs"};
     for (const PluginInfo* p : list_plugins()) known.push_back(p->category);
     say(fmt::format("whit help: no category \"{}\"{}", args[0], remedy(did_you_mean(args[0], known))));
     return kUsage;

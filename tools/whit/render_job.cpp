@@ -122,15 +122,17 @@ class RenderJob {
                       last));
       return kUsage;
     }
-    const auto place = [this](SourcePos where) {
-      const SourcePlace p = sources_.place(where);
-      return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
-    };
     const uint32_t sample = asked.size() == 3 ? static_cast<uint32_t>(asked[2]) : odd_sample(scene, pixel);
-    const std::string account = debug_sample(scene, pixel, sample, place);
+    const std::string account = debug_sample(scene, pixel, sample, [this](SourcePos where) { return place(where); });
     if (const int code = report(built.textures->errors()); code != kDone) return code;
     fmt::print("{}", account);
     return kDone;
+  }
+
+  /// "scene.pbrt:12:3" for a statement.
+  std::string place(SourcePos where) const {
+    const SourcePlace p = sources_.place(where);
+    return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
   }
 
   OutputRequest output_request() const {
@@ -151,11 +153,11 @@ class RenderJob {
   }
 
   int trace_and_write(const BuiltWorld& built, const OutputPlan& output) {
-    const RenderedWorld rendered = trace(built);
+    const RenderedWorld rendered = trace(built, output.aovs);
     const RenderResult& result = rendered.result;
     times_.render = result.seconds;
     if (int code = report(rendered.said); code != kDone) return code;
-    const WrittenOutput written = write_output(output, result.picture, metadata(*built.scene, result));
+    const WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
     times_.write = written.seconds;
     if (int code = report_output(written.said); code != kDone) return code;
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
@@ -178,8 +180,9 @@ class RenderJob {
   }
 
   /// Renders, with what there is to see of it meanwhile.
-  RenderedWorld trace(const BuiltWorld& built) const {
+  RenderedWorld trace(const BuiltWorld& built, const std::vector<std::string>& aovs) const {
     RenderOptions options;
+    options.aovs = {aovs, [this](SourcePos where) { return place(where); }};
     options.threads = settings_.threads;
     const Vec2i size = built.scene->camera().film.resolution;
     if (!settings_.crop.empty()) {

@@ -1,0 +1,270 @@
+#include "core/render/aov_film.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/render/cryptomatte.h"
+
+namespace whit {
+namespace {
+
+void note(std::vector<Coverage>& coverage, uint32_t id, double weight) {
+  for (Coverage& c : coverage) {
+    if (c.id != id) continue;
+    c.weight += weight;
+    return;
+  }
+  coverage.push_back({id, weight});
+}
+
+}  // namespace
+
+AovTile::AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter)
+    : plan_(plan),
+      reach_(tile, filter),
+      x0_(tile.x * TileReach::kTile),
+      y0_(tile.y * TileReach::kTile),
+      stride_(plan.columns.size() + 2),
+      sums_(stride_ * reach_.pixels()) {
+  constexpr size_t kOwn = TileReach::kTile * TileReach::kTile;
+  coverage_.assign(plan.mattes.size(), std::vector<std::vector<Coverage>>(reach_.pixels()));
+  distance_.assign(kOwn, std::numeric_limits<float>::infinity());
+  nearest_.resize(kOwn * plan.columns.size());
+  if (plan.statistics) statistics_.resize(kOwn);
+}
+
+void AovTile::add(const SampleChunk& chunk, const uint8_t* usable) {
+  for (int i = 0; i < chunk.n; ++i) {
+    if (!usable[i]) continue;
+    add_sums(chunk, i);
+    if (chunk.ray_weight[i] != 0) add_nearest(chunk, i);
+    if (plan_.statistics) add_statistics(chunk, i);
+  }
+}
+
+void AovTile::add_sums(const SampleChunk& chunk, int i) {
+  const size_t columns = plan_.columns.size();
+  // A ray that does not reach the film has met nothing.
+  const bool met = chunk.met[i] != 0 && chunk.ray_weight[i] != 0;
+  reach_.each_reached(chunk.film_x[i], chunk.film_y[i], [&](int pixel, double weight) {
+    double* const sums = &sums_[stride_ * static_cast<size_t>(pixel)];
+    for (size_t c = 0; c < columns; ++c) {
+      const bool is_light = plan_.columns[c]->pixel == AovPixel::Mean;
+      const double value = chunk.aovs[c][i] * (is_light ? chunk.ray_weight[i] : 1.0f);
+      if (is_light || met) sums[c] += weight * value;
+    }
+    sums[columns] += weight;
+    if (!met) return;
+    sums[columns + 1] += weight;
+    for (size_t m = 0; m < plan_.mattes.size(); ++m) {
+      const auto id = static_cast<uint32_t>(chunk.aovs[plan_.mattes[m]][i]);
+      note(coverage_[m][static_cast<size_t>(pixel)], id, weight);
+    }
+  });
+}
+
+void AovTile::add_nearest(const SampleChunk& chunk, int i) {
+  const float dx = chunk.film_x[i] - static_cast<float>(chunk.px[i]) - 0.5f;
+  const float dy = chunk.film_y[i] - static_cast<float>(chunk.py[i]) - 0.5f;
+  const size_t pixel = own(chunk.px[i], chunk.py[i]), columns = plan_.columns.size();
+  if (!(dx * dx + dy * dy < distance_[pixel])) return;
+  distance_[pixel] = dx * dx + dy * dy;
+  for (size_t c = 0; c < columns; ++c) nearest_[columns * pixel + c] = chunk.aovs[c][i];
+}
+
+const float* AovTile::nearest(int x, int y) const {
+  const size_t pixel = own(x, y);
+  return std::isfinite(distance_[pixel]) ? &nearest_[plan_.columns.size() * pixel] : nullptr;
+}
+
+/// Welford, Note on a Method for Calculating Corrected Sums of Squares and Products, 1962.
+void AovTile::add_statistics(const SampleChunk& chunk, int i) {
+  PixelStatistics& s = statistics_[own(chunk.px[i], chunk.py[i])];
+  ++s.n;
+  for (int c = 0; c < 3; ++c) {
+    const double value = static_cast<double>(chunk.radiance[i][c]), off = value - s.mean[c];
+    s.mean[c] += off / static_cast<double>(s.n);
+    s.square[c] += off * (value - s.mean[c]);
+  }
+}
+
+namespace {
+
+/// All tiles as one picture.
+class Resolver {
+ public:
+  Resolver(const Scene& scene, const AovPlan& plan, const std::vector<AovTile>& tiles, const TileGrid& grid,
+           const FilterTable& filter, const Box2i& window)
+      : scene_(scene), plan_(plan), tiles_(tiles), grid_(grid), filter_(filter), window_(window) {}
+
+  AovPicture run(const StatementPlace& place) {
+    for (const AovLayer& layer : plan_.layers) {
+      const size_t first = add_channels(layer.channels, layer.row->full_float);
+      each_pixel([&](Vec2i pixel, size_t at) { resolve(layer, first, pixel, at); });
+    }
+    size_t matte = 0;
+    for (const AovLayer& layer : plan_.layers) {
+      if (layer.row->matte) add_matte(layer, matte++, layer.row->names(scene_, place));
+    }
+    add_camera();
+    return std::move(out_);
+  }
+
+ private:
+  template <class Body>
+  void each_pixel(const Body& body) const {
+    const int width = window_.max.x - window_.min.x, height = window_.max.y - window_.min.y;
+    tbb::parallel_for(0, height, [&](int row) {
+      for (int x = 0; x < width; ++x)
+        body(window_.min + Vec2i(x, row),
+             static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(x));
+    });
+  }
+
+  size_t add_channels(const std::vector<std::string>& names, bool full_float) {
+    const size_t first = out_.channels.size();
+    const Vec2i size = window_.max - window_.min;
+    for (const std::string& name : names) {
+      out_.channels.push_back(
+          {name, full_float, std::vector<float>(static_cast<size_t>(size.x) * static_cast<size_t>(size.y))});
+    }
+    return first;
+  }
+
+  /// The tile whose own samples a pixel's are; null where none is rendered.
+  const AovTile* own_tile(Vec2i pixel) const {
+    const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileReach::kTile)); };
+    const Vec2i at(tile_of(pixel.x) - grid_.first.x, tile_of(pixel.y) - grid_.first.y);
+    if (at.x < 0 || at.y < 0 || at.x >= grid_.columns || at.y >= grid_.rows) return nullptr;
+    return &tiles_[static_cast<size_t>(at.y * grid_.columns + at.x)];
+  }
+
+  void resolve(const AovLayer& layer, size_t first, Vec2i pixel, size_t at) {
+    std::vector<float> value(layer.channels.size(), layer.row->nothing);
+    if (layer.row->pixel == AovPixel::Statistic) {
+      const AovTile* const tile = own_tile(pixel);
+      layer.row->statistic(tile ? tile->statistics(pixel.x, pixel.y) : PixelStatistics{}, film_scale(), value.data());
+    } else if (layer.row->pixel == AovPixel::Nearest) {
+      const AovTile* const tile = own_tile(pixel);
+      const float* const nearest = tile ? tile->nearest(pixel.x, pixel.y) : nullptr;
+      if (nearest) std::copy_n(nearest + layer.column, value.size(), value.begin());
+    } else {
+      mean(layer, pixel, value);
+    }
+    for (size_t c = 0; c < value.size(); ++c) out_.channels[first + c].values[at] = value[c];
+  }
+
+  float film_scale() const { return static_cast<float>(scene_.film().scale()); }
+
+  void mean(const AovLayer& layer, Vec2i pixel, std::vector<float>& value) const {
+    const size_t n = value.size(), columns = plan_.columns.size();
+    std::vector<double> sum(n, 0.0);
+    double all = 0, met = 0;
+    grid_.each_around(pixel, filter_, [&](size_t tile) {
+      const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
+      if (!s) return;
+      for (size_t c = 0; c < n; ++c) sum[c] += s[static_cast<size_t>(layer.column) + c];
+      all += s[columns], met += s[columns + 1];
+    });
+    double weight = layer.row->pixel == AovPixel::Mean ? all : met;
+    if (layer.row->pixel == AovPixel::SurfaceDirection)
+      weight = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    const double scale = layer.row->pixel == AovPixel::Mean ? static_cast<double>(film_scale()) : 1.0;
+    for (size_t c = 0; c < n; ++c) value[c] = weight != 0 ? static_cast<float>(sum[c] / weight * scale) : 0.0f;
+  }
+
+  /// What covers a pixel, by its share of the weights of all samples, the largest first. Things of one name are one.
+  std::vector<Coverage> ranks(size_t matte, const std::vector<uint32_t>& hash_of, Vec2i pixel) const {
+    std::vector<Coverage> found;
+    double all = 0;
+    grid_.each_around(pixel, filter_, [&](size_t tile) {
+      const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
+      if (!s) return;
+      all += s[plan_.columns.size()];
+      for (const Coverage& c : tiles_[tile].coverage(matte, pixel.x, pixel.y)) note(found, hash_of[c.id], c.weight);
+    });
+    for (Coverage& c : found) c.weight = all != 0 ? c.weight / all : 0;
+    // Weights of some filters are negative, and so may be a sum of few.
+    std::erase_if(found, [](const Coverage& c) { return !(c.weight > 0); });
+    std::sort(found.begin(), found.end(), [](const Coverage& a, const Coverage& b) {
+      return a.weight != b.weight ? a.weight > b.weight : a.id < b.id;
+    });
+    return found;
+  }
+
+  /// Three layers of two ranks each: six things cover a pixel at most; the manifest; and what the numbers stand for.
+  void add_matte(const AovLayer& layer, size_t matte, const std::vector<IdName>& names) {
+    constexpr size_t kRanks = 6;
+    std::vector<uint32_t> hash_of;
+    for (const IdName& n : names) hash_of.push_back(matte_id(n.name));
+    std::vector<std::string> channels;
+    for (size_t rank = 0; rank < kRanks; rank += 2) {
+      for (const char c : {'r', 'g', 'b', 'a'})
+        channels.push_back(fmt::format("{}{:02}.{}", layer.row->matte, rank / 2, c));
+    }
+    const size_t first = add_channels(channels, true);
+    each_pixel([&](Vec2i pixel, size_t at) {
+      const std::vector<Coverage> found = ranks(matte, hash_of, pixel);
+      for (size_t r = 0; r < std::min(found.size(), kRanks); ++r) {
+        out_.channels[first + 2 * r].values[at] = matte_float(found[r].id);
+        out_.channels[first + 2 * r + 1].values[at] = static_cast<float>(found[r].weight);
+      }
+    });
+    const std::set<uint32_t> seen = numbers_seen(matte);
+    std::vector<std::string> manifest;
+    std::string numbers;
+    for (const uint32_t id : seen) {
+      manifest.push_back(names[id].name);
+      numbers += fmt::format("{}\"{}\":{{\"name\":{},\"where\":{}}}", numbers.empty() ? "{" : ",", id,
+                             json_text(names[id].name), json_text(names[id].where));
+    }
+    const std::vector<OutputMetadata> header = matte_header(layer.row->matte, manifest);
+    out_.header.insert(out_.header.end(), header.begin(), header.end());
+    out_.header.push_back({fmt::format("whit:{}s", layer.row->name), numbers.empty() ? "{}" : numbers + "}"});
+  }
+
+  /// What is in the picture, of whatever number of things there may be in the scene.
+  std::set<uint32_t> numbers_seen(size_t matte) const {
+    std::set<uint32_t> seen;
+    for (int y = window_.min.y; y < window_.max.y; ++y) {
+      for (int x = window_.min.x; x < window_.max.x; ++x) {
+        grid_.each_around({x, y}, filter_, [&](size_t tile) {
+          if (!tiles_[tile].sums(x, y)) return;
+          for (const Coverage& c : tiles_[tile].coverage(matte, x, y)) seen.insert(c.id);
+        });
+      }
+    }
+    return seen;
+  }
+
+  /// OpenEXR's standard attributes; of a camera that moves, when the transforms' interval begins.
+  void add_camera() {
+    const Mat4d to_camera = scene_.space.from_world() * scene_.camera_keys.front().inverse();
+    out_.matrices.push_back({"worldToCamera", Imath::M44f(to_camera)});
+    if (const std::optional<Mat4d> to_ndc = scene_.camera().to_ndc())
+      out_.matrices.push_back({"worldToNDC", Imath::M44f(to_camera * *to_ndc)});
+  }
+
+  const Scene& scene_;
+  const AovPlan& plan_;
+  const std::vector<AovTile>& tiles_;
+  const TileGrid& grid_;
+  const FilterTable& filter_;
+  const Box2i window_;
+  AovPicture out_;
+};
+
+}  // namespace
+
+AovPicture resolve_aovs(const Scene& scene, const AovPlan& plan, const StatementPlace& place,
+                        const std::vector<AovTile>& tiles, const TileGrid& grid, const FilterTable& filter,
+                        const Box2i& window) {
+  return Resolver(scene, plan, tiles, grid, filter, window).run(place);
+}
+
+}  // namespace whit

@@ -1,0 +1,74 @@
+// The film of AOVs: values of samples to layers of a picture, in the same fixed order as the picture's colours.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/image/write.h"
+#include "core/render/aov_plan.h"
+#include "core/render/film_buffer.h"
+#include "core/render/worker.h"
+
+namespace whit {
+
+/// How much of a pixel something with a number covers: the weights of its samples.
+struct Coverage {
+  uint32_t id;
+  double weight;
+};
+
+/// What the samples of one tile give to AOVs.
+class AovTile {
+ public:
+  AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter);
+  /// Adds a chunk's samples in their order, those that are usable. Its radiance is weighed.
+  void add(const SampleChunk& chunk, const uint8_t* usable);
+
+  /// Sums of AovPlan::columns at a pixel, then of the weights of all samples and of those that met something; null outside
+  /// of the tile's reach.
+  const double* sums(int x, int y) const {
+    return reach_.holds(x, y) ? &sums_[stride_ * static_cast<size_t>(reach_.number(x, y))] : nullptr;
+  }
+  /// What covers a pixel within reach, in the order in which it was met, by the numbers of a column.
+  const std::vector<Coverage>& coverage(size_t matte, int x, int y) const {
+    return coverage_[matte][static_cast<size_t>(reach_.number(x, y))];
+  }
+  /// The sample nearest to the middle of a pixel of the tile, by column; null without a sample.
+  const float* nearest(int x, int y) const;
+  const PixelStatistics& statistics(int x, int y) const { return statistics_[own(x, y)]; }
+
+ private:
+  size_t own(int x, int y) const { return static_cast<size_t>((y - y0_) * TileReach::kTile + x - x0_); }
+  void add_sums(const SampleChunk& chunk, int sample);
+  void add_nearest(const SampleChunk& chunk, int sample);
+  void add_statistics(const SampleChunk& chunk, int sample);
+
+  const AovPlan& plan_;
+  TileReach reach_;
+  int x0_, y0_;
+  size_t stride_;
+  std::vector<double> sums_;
+  std::vector<std::vector<std::vector<Coverage>>> coverage_;  ///< By matte and pixel.
+  std::vector<float> distance_, nearest_;                     ///< Squared from the middle, and the values.
+  std::vector<PixelStatistics> statistics_;
+};
+
+/// Layers of a picture and what its header says of them.
+struct AovPicture {
+  struct Channel {
+    std::string name;
+    bool full_float;
+    std::vector<float> values;  ///< Of the window, row by row.
+  };
+  std::vector<Channel> channels;
+  std::vector<OutputMetadata> header;
+  std::vector<OutputMatrix> matrices;
+};
+
+/// Merges the tiles.
+AovPicture resolve_aovs(const Scene& scene, const AovPlan& plan, const StatementPlace& place,
+                        const std::vector<AovTile>& tiles, const TileGrid& grid, const FilterTable& filter,
+                        const Box2i& window);
+
+}  // namespace whit

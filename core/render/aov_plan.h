@@ -1,0 +1,44 @@
+// Which AOVs a render makes, and where each has its values while it does.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/render/aovs.h"
+
+namespace whit {
+
+/// What somebody asks for.
+struct AovRequest {
+  std::vector<std::string> names;  ///< All known: see unknown_aov().
+  StatementPlace place;            ///< For the tables of names.
+};
+
+/// A row of the table that is asked for.
+struct AovLayer {
+  const AovRow* row;
+  std::vector<std::string> channels;  ///< In the file.
+  int column = -1;                    ///< The first of as many arrays of every chunk of samples; -1 for statistics.
+};
+
+struct AovPlan {
+  /// Without names nothing is planned.
+  AovPlan(const Scene& scene, const AovRequest& request);
+  bool any() const { return !layers.empty(); }
+
+  std::vector<AovLayer> layers;
+  std::vector<const AovRow*> columns;  ///< The row of each array.
+  std::vector<int> mattes;             ///< Arrays of numbers that cryptomattes are made of.
+  bool surfaces = false;               ///< Some row asks for the first surfaces.
+  bool parts = false;                  ///< Some row asks how light got to the camera.
+  bool statistics = false;
+
+  /// Arrays of each part of the light; -1 where nobody asks.
+  int column_of_part[5] = {-1, -1, -1, -1, -1};
+  std::vector<std::string> light_groups;  ///< Their names; empty when nobody asks.
+  int first_group = -1;                   ///< Array of the first group; three for each.
+  // The group of each light, light at infinity and shape; -1 for none.
+  std::vector<int> group_of_light, group_of_environment, group_of_shape;
+};
+
+}  // namespace whit

@@ -1,0 +1,285 @@
+// The table of AOVs. Another one is another row, and where its values come from.
+
+#include "core/render/aovs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "core/lobe/eval.h"
+#include "core/render/points.h"
+#include "core/scene/motion.h"
+
+namespace whit {
+namespace {
+
+// ---- Values of the first surface ----
+
+template <class Value>
+void write(const FirstSurfaces& at, SampleValues to, const Value& value) {
+  const int32_t* const slot = at.points.rays.slot;
+  for (int i = 0; i < at.points.n; ++i) {
+    const auto v = value(i);
+    constexpr int kChannels = sizeof v / sizeof(float);
+    for (int c = 0; c < kChannels; ++c) to[c][slot[i]] = (&v.x)[c];
+  }
+}
+struct One {
+  float x;
+};
+
+void shading_normal(const FirstSurfaces& at, SampleValues to) {
+  write(at, to, [&](int i) { return at.points.at.ns[i]; });
+}
+
+void geometric_normal(const FirstSurfaces& at, SampleValues to) {
+  write(at, to, [&](int i) { return at.points.at.ng[i]; });
+}
+
+void position(const FirstSurfaces& at, SampleValues to) {
+  const Mat4d to_world = at.scene.space.to_world();
+  write(at, to, [&](int i) { return Vec3f(transform_point(to_world, Vec3d(at.points.at.p[i]))); });
+}
+
+void depth(const FirstSurfaces& at, SampleValues to) {
+  const float* const time = at.points.rays.time;
+  const Mat4d still = at.scene.camera_keys.front().inverse();
+  const bool moves = time && at.scene.camera_keys.size() > 1;
+  write(at, to, [&](int i) {
+    const Mat4d to_camera = moves ? interpolate_keys(at.scene.camera_keys, time[i]).inverse() : still;
+    return One{static_cast<float>(transform_point(to_camera, Vec3d(at.points.at.p[i])).z)};
+  });
+}
+
+/// A fixed point in the unit cube: which lobe, and where in it. The golden ratio's relative for three dimensions
+/// (Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018) spreads any number of them evenly.
+Vec3f spread_point(int k) {
+  const auto fraction = [&](double step) {
+    const double x = 0.5 + k * step;
+    return static_cast<float>(x - std::floor(x));
+  };
+  return {fraction(0.8191725133961645), fraction(0.6710436067037893), fraction(0.5497004779019703)};
+}
+
+/// The mean of fixed samples of the lobes of a run: the share of even light that comes back.
+RGBLanes mean_of_lobes(const MaterialRun& run, Arena& arena) {
+  constexpr int kSamples = 16;
+  const int n = run.points.n;
+  const RGBLanes sum = arena.rgb(n), weight = arena.rgb(n);
+  float *const lobe = arena.floats(n), *const u = arena.floats(n), *const v = arena.floats(n);
+  const LobeSamples samples{arena.vec3(n), weight, arena.floats(n), arena.floats(n)};
+  for_lanes(n, [&](int i) { sum.set(i, RGB(0.0f)); });
+  for (int k = 0; k < kSamples; ++k) {
+    const ArenaScope scratch(arena);
+    const Vec3f at = spread_point(k);
+    for_lanes(n, [&](int i) { lobe[i] = at.x, u[i] = at.y, v[i] = at.z; });
+    sample_lobes(run.lobes, run.points, run.frame, lobe, u, v, LobeKinds::All, samples);
+    // Refraction concentrates radiance; no light is made or lost by that.
+    for_lanes(n, [&](int i) { sum.set(i, sum[i] + weight[i] * (samples.eta2[i] / kSamples)); });
+  }
+  return sum;
+}
+
+void albedo(const FirstSurfaces& at, SampleValues to) {
+  for (const MaterialRun& run : at.points.materials) {
+    if (run.lobes.count == 0) continue;
+    const ArenaScope scratch(*run.points.arena);
+    const RGBLanes mean = mean_of_lobes(run, *run.points.arena);
+    const int32_t* const slot = at.points.rays.slot + run.first;
+    for (int i = 0; i < run.points.n; ++i) {
+      for (int c = 0; c < 3; ++c) to[c][slot[i]] = std::clamp(mean[i][c], 0.0f, 1.0f);
+    }
+  }
+}
+
+// ---- Numbers that stand for something ----
+
+void material_number(const FirstSurfaces& at, SampleValues to) {
+  write(at, to, [&](int i) {
+    return One{static_cast<float>(at.scene.shapes[static_cast<size_t>(at.points.hits.shape[i])].material)};
+  });
+}
+
+void shape_number(const FirstSurfaces& at, SampleValues to) {
+  write(at, to, [&](int i) { return One{static_cast<float>(at.points.hits.shape[i])}; });
+}
+
+/// Gives each a name that no other statement's has: what it is called; else with its line; else with its column.
+class Names {
+ public:
+  void add(const std::string& called, const std::string& where) {
+    const std::string line = where.substr(0, where.rfind(':'));
+    const std::string at = called.empty() ? "" : called + "@";
+    for (const std::string& name : {called, at + line, at + where}) {
+      if (name.empty() || (!taken_.insert(name).second && name != at + where)) continue;
+      names.push_back({name, where});
+      return;
+    }
+    names.push_back({called, where});
+  }
+  std::vector<IdName> names;
+
+ private:
+  std::set<std::string> taken_;
+};
+
+std::vector<IdName> material_names(const Scene& scene, const StatementPlace& place) {
+  const std::vector<MaterialDescription>& described = scene.bound.description->materials;
+  Names names;
+  for (size_t i = 0; i < scene.bound.materials.size(); ++i) {
+    // Beyond the description's are those whose shapes say something else of them.
+    const SourcePos at = scene.bound.materials[i].where;
+    const std::string where = i == 0 ? "" : place(at);
+    const bool described_here = i < described.size();
+    if (described_here && !described[i].name.empty()) {
+      names.add(described[i].name, where);
+    } else {
+      const std::string plugin = described_here ? described[i].plugin : "material";
+      names.add(i == 0 ? "default" : plugin + "@" + where.substr(0, where.rfind(':')), where);
+    }
+  }
+  return std::move(names.names);
+}
+
+std::vector<IdName> shape_names(const Scene& scene, const StatementPlace& place) {
+  Names names;
+  for (const SceneShape& shape : scene.shapes) names.add("", place(shape.where));
+  return std::move(names.names);
+}
+
+// ---- Of a pixel's samples together ----
+
+/// Unbiased: sum (x - mean)^2 / (n - 1) is the samples' variance, and an n-th of it their mean's.
+void variance_of_mean(const PixelStatistics& of, float film_scale, float* to) {
+  const double n = static_cast<double>(of.n), scale = static_cast<double>(film_scale);
+  for (int c = 0; c < 3; ++c) {
+    to[c] = of.n < 2 ? std::numeric_limits<float>::infinity()
+                     : static_cast<float>(of.square[c] / (n - 1) / n * scale * scale);
+  }
+}
+
+void sample_count(const PixelStatistics& of, float, float* to) { *to = static_cast<float>(of.n); }
+
+// ---- The table ----
+
+AovRow of_surface(const char* name, std::vector<std::string> channels, AovPixel pixel, const char* doc,
+                  void (*value)(const FirstSurfaces&, SampleValues)) {
+  return {
+      .name = name, .channels = std::move(channels), .pixel = pixel, .full_float = true, .doc = doc, .surface = value};
+}
+
+std::vector<std::string> rgb(const std::string& layer) { return {layer + ".R", layer + ".G", layer + ".B"}; }
+std::vector<std::string> xyz(const std::string& layer) { return {layer + ".X", layer + ".Y", layer + ".Z"}; }
+
+AovRow of_light(const char* name, LightPart part, const char* doc) {
+  return {.name = name, .channels = rgb(name), .pixel = AovPixel::Mean, .full_float = false, .doc = doc, .part = part};
+}
+
+AovRow with_nothing(AovRow row, float value) {
+  row.nothing = value;
+  return row;
+}
+
+AovRow with_names(AovRow row, const char* matte, decltype(AovRow::names) names) {
+  row.nothing = -1, row.matte = matte, row.names = names;
+  return row;
+}
+
+AovRow as_colour(AovRow row) {
+  row.full_float = false;
+  return row;
+}
+
+const std::vector<AovRow>& table() {
+  using enum AovPixel;
+  static const std::vector<AovRow> rows{
+      as_colour(
+          of_surface("albedo", rgb("Albedo"), SurfaceMean,
+                     "Share of even light from all around that the surface sends to the camera, its mirrors and "
+                     "boundaries included: the mean of 16 fixed samples of its lobes, 0 to 1. Of integrators that "
+                     "ask for no materials 0.",
+                     albedo)),
+      of_surface("N", xyz("N"), SurfaceDirection, "Shading normal in the world, with bumps.", shading_normal),
+      of_surface("Ng", xyz("Ng"), SurfaceDirection, "Geometric normal in the world.", geometric_normal),
+      of_surface("P", xyz("P"), Nearest, "Point in the world; 0 where there is none.", position),
+      with_nothing(
+          of_surface("Z", {"Z"}, Nearest,
+                     "Depth along the camera's axis, in the world's units; infinite where there is nothing.", depth),
+          std::numeric_limits<float>::infinity()),
+      with_names(of_surface("material", {"material.id"}, Nearest,
+                            "Number of the material, -1 for none. The header's whit:materials says what it stands for; "
+                            "with cryptomattes.",
+                            material_number),
+                 "CryptoMaterial", material_names),
+      with_names(
+          of_surface("shape", {"shape.id"}, Nearest,
+                     "Number of the shape's statement, -1 for none. The header's whit:shapes says what it stands "
+                     "for; with cryptomattes.",
+                     shape_number),
+          "CryptoShape", shape_names),
+      of_light("emission", LightPart::Emission, "Light of emitters and the sky that the camera sees itself."),
+      of_light("direct", LightPart::Direct, "Light that the first surface gets from lights."),
+      of_light("reflection", LightPart::Reflection, "Light that comes by a perfect mirror of the first surface."),
+      of_light("refraction", LightPart::Refraction, "Light that comes through the first surface's smooth boundary."),
+      of_light("indirect", LightPart::Indirect, "Other light that the first surface gets from surfaces."),
+      {.name = "lightgroups",
+       .channels = {".R", ".G", ".B"},
+       .pixel = Mean,
+       .full_float = false,
+       .doc = "For each group of lights, the light that comes from it: layers lightgroup.NAME.",
+       .by_light_group = true},
+      {.name = "variance",
+       .channels = rgb("variance"),
+       .pixel = Statistic,
+       .full_float = true,
+       .doc = "Variance of the mean of the pixel's own samples, unbiased; infinite with fewer than two.",
+       .statistic = variance_of_mean},
+      {.name = "samples",
+       .channels = {"samples"},
+       .pixel = Statistic,
+       .full_float = true,
+       .doc = "How many of the pixel's own samples are numbers.",
+       .statistic = sample_count},
+  };
+  return rows;
+}
+
+}  // namespace
+
+const char* pixel_text(AovPixel pixel) {
+  switch (pixel) {
+    case AovPixel::Mean: return "mean of all samples, weighed by the filter";
+    case AovPixel::SurfaceMean: return "mean of the samples that meet a surface, weighed by the filter";
+    case AovPixel::SurfaceDirection:
+      return "mean of the samples that meet a surface, weighed by the filter, as a unit vector";
+    case AovPixel::Nearest: return "the pixel's own sample nearest to its middle";
+    case AovPixel::Statistic: return "all of the pixel's own samples";
+  }
+  return "";
+}
+
+std::span<const AovRow> all_aovs() { return table(); }
+
+const AovRow* find_aov(const std::string& name) {
+  for (const AovRow& row : table()) {
+    if (row.name == name) return &row;
+  }
+  return nullptr;
+}
+
+std::string unknown_aov(const std::vector<std::string>& names) {
+  std::vector<std::string> known;
+  for (const AovRow& row : table()) known.emplace_back(row.name);
+  for (const std::string& name : names) {
+    if (find_aov(name)) continue;
+    const std::string remedy = did_you_mean(name, known);
+    return fmt::format("there is no AOV \"{}\"; {}", name,
+                       remedy.empty() ? fmt::format("there are {}", fmt::join(known, ", ")) : remedy);
+  }
+  return "";
+}
+
+}  // namespace whit
