@@ -29,12 +29,12 @@ AovTile::AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter)
       reach_(tile, filter),
       x0_(tile.x * TileReach::kTile),
       y0_(tile.y * TileReach::kTile),
-      stride_(plan.columns.size() + 2),
+      stride_(plan.means + 2),
       sums_(stride_ * reach_.pixels()) {
   constexpr size_t kOwn = TileReach::kTile * TileReach::kTile;
   coverage_.assign(plan.mattes.size(), std::vector<std::vector<Coverage>>(reach_.pixels()));
   distance_.assign(kOwn, std::numeric_limits<float>::infinity());
-  nearest_.resize(kOwn * plan.columns.size());
+  nearest_.resize(kOwn * (plan.columns.size() - plan.means));
   if (plan.statistics) statistics_.resize(kOwn);
 }
 
@@ -48,19 +48,19 @@ void AovTile::add(const SampleChunk& chunk, const uint8_t* usable) {
 }
 
 void AovTile::add_sums(const SampleChunk& chunk, int i) {
-  const size_t columns = plan_.columns.size();
+  const size_t means = plan_.means;
   // A ray that does not reach the film has met nothing.
   const bool met = chunk.met[i] != 0 && chunk.ray_weight[i] != 0;
   reach_.each_reached(chunk.film_x[i], chunk.film_y[i], [&](int pixel, double weight) {
     double* const sums = &sums_[stride_ * static_cast<size_t>(pixel)];
-    for (size_t c = 0; c < columns; ++c) {
+    for (size_t c = 0; c < means; ++c) {
       const bool is_light = plan_.columns[c]->pixel == AovPixel::Mean;
       const double value = chunk.aovs[c][i] * (is_light ? chunk.ray_weight[i] : 1.0f);
       if (is_light || met) sums[c] += weight * value;
     }
-    sums[columns] += weight;
+    sums[means] += weight;
     if (!met) return;
-    sums[columns + 1] += weight;
+    sums[means + 1] += weight;
     for (size_t m = 0; m < plan_.mattes.size(); ++m) {
       const auto id = static_cast<uint32_t>(chunk.aovs[plan_.mattes[m]][i]);
       note(coverage_[m][static_cast<size_t>(pixel)], id, weight);
@@ -71,15 +71,15 @@ void AovTile::add_sums(const SampleChunk& chunk, int i) {
 void AovTile::add_nearest(const SampleChunk& chunk, int i) {
   const float dx = chunk.film_x[i] - static_cast<float>(chunk.px[i]) - 0.5f;
   const float dy = chunk.film_y[i] - static_cast<float>(chunk.py[i]) - 0.5f;
-  const size_t pixel = own(chunk.px[i], chunk.py[i]), columns = plan_.columns.size();
+  const size_t pixel = own(chunk.px[i], chunk.py[i]), columns = plan_.columns.size() - plan_.means;
   if (!(dx * dx + dy * dy < distance_[pixel])) return;
   distance_[pixel] = dx * dx + dy * dy;
-  for (size_t c = 0; c < columns; ++c) nearest_[columns * pixel + c] = chunk.aovs[c][i];
+  for (size_t c = 0; c < columns; ++c) nearest_[columns * pixel + c] = chunk.aovs[plan_.means + c][i];
 }
 
 const float* AovTile::nearest(int x, int y) const {
   const size_t pixel = own(x, y);
-  return std::isfinite(distance_[pixel]) ? &nearest_[plan_.columns.size() * pixel] : nullptr;
+  return std::isfinite(distance_[pixel]) ? &nearest_[(plan_.columns.size() - plan_.means) * pixel] : nullptr;
 }
 
 /// Welford, Note on a Method for Calculating Corrected Sums of Squares and Products, 1962.
@@ -152,7 +152,8 @@ class Resolver {
     } else if (layer.row->pixel == AovPixel::Nearest) {
       const AovTile* const tile = own_tile(pixel);
       const float* const nearest = tile ? tile->nearest(pixel.x, pixel.y) : nullptr;
-      if (nearest) std::copy_n(nearest + layer.column, value.size(), value.begin());
+      const size_t column = static_cast<size_t>(layer.column) - plan_.means;
+      if (nearest) std::copy_n(nearest + column, value.size(), value.begin());
     } else {
       mean(layer, pixel, value);
     }
@@ -162,14 +163,14 @@ class Resolver {
   float film_scale() const { return static_cast<float>(scene_.film().scale()); }
 
   void mean(const AovLayer& layer, Vec2i pixel, std::vector<float>& value) const {
-    const size_t n = value.size(), columns = plan_.columns.size();
+    const size_t n = value.size(), means = plan_.means;
     std::vector<double> sum(n, 0.0);
     double all = 0, met = 0;
     grid_.each_around(pixel, filter_, [&](size_t tile) {
       const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
       if (!s) return;
       for (size_t c = 0; c < n; ++c) sum[c] += s[static_cast<size_t>(layer.column) + c];
-      all += s[columns], met += s[columns + 1];
+      all += s[means], met += s[means + 1];
     });
     double weight = layer.row->pixel == AovPixel::Mean ? all : met;
     if (layer.row->pixel == AovPixel::SurfaceDirection)
@@ -185,7 +186,7 @@ class Resolver {
     grid_.each_around(pixel, filter_, [&](size_t tile) {
       const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
       if (!s) return;
-      all += s[plan_.columns.size()];
+      all += s[plan_.means];
       for (const Coverage& c : tiles_[tile].coverage(matte, pixel.x, pixel.y)) note(found, hash_of[c.id], c.weight);
     });
     for (Coverage& c : found) c.weight = all != 0 ? c.weight / all : 0;

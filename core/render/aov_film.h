@@ -25,8 +25,8 @@ class AovTile {
   /// Adds a chunk's samples in their order, those that are usable. Its radiance is weighed.
   void add(const SampleChunk& chunk, const uint8_t* usable);
 
-  /// Sums of AovPlan::columns at a pixel, then of the weights of all samples and of those that met something; null outside
-  /// of the tile's reach.
+  /// Sums of the first AovPlan::means columns at a pixel, then of the weights of all samples and of those that met
+  /// something; null outside of the tile's reach.
   const double* sums(int x, int y) const {
     return reach_.holds(x, y) ? &sums_[stride_ * static_cast<size_t>(reach_.number(x, y))] : nullptr;
   }
@@ -34,7 +34,7 @@ class AovTile {
   const std::vector<Coverage>& coverage(size_t matte, int x, int y) const {
     return coverage_[matte][static_cast<size_t>(reach_.number(x, y))];
   }
-  /// The sample nearest to the middle of a pixel of the tile, by column; null without a sample.
+  /// The sample nearest to the middle of a pixel of the tile, by column from AovPlan::means on; null without a sample.
   const float* nearest(int x, int y) const;
   const PixelStatistics& statistics(int x, int y) const { return statistics_[own(x, y)]; }
 

@@ -40,6 +40,19 @@ std::vector<std::string> channels_by_group(const AovRow& row, const std::vector<
   return channels;
 }
 
+/// Gives the layers arrays, those of which pixels are means first.
+void place_columns(AovPlan& plan) {
+  for (const bool nearest : {false, true}) {
+    for (AovLayer& layer : plan.layers) {
+      const AovPixel pixel = layer.row->pixel;
+      if (pixel == AovPixel::Statistic || (pixel == AovPixel::Nearest) != nearest) continue;
+      layer.column = static_cast<int>(plan.columns.size());
+      plan.columns.insert(plan.columns.end(), layer.channels.size(), layer.row);
+    }
+    if (!nearest) plan.means = plan.columns.size();
+  }
+}
+
 }  // namespace
 
 AovPlan::AovPlan(const Scene& scene, const AovRequest& request) {
@@ -50,17 +63,17 @@ AovPlan::AovPlan(const Scene& scene, const AovRequest& request) {
       find_light_groups(scene, *this);
       layer.channels = channels_by_group(row, light_groups);
     }
-    if (row.pixel != AovPixel::Statistic) {
-      layer.column = static_cast<int>(columns.size());
-      columns.insert(columns.end(), layer.channels.size(), &row);
-    }
+    layers.push_back(std::move(layer));
+  }
+  place_columns(*this);
+  for (const AovLayer& layer : layers) {
+    const AovRow& row = *layer.row;
     surfaces |= row.surface != nullptr;
     parts |= row.part.has_value();
     statistics |= row.pixel == AovPixel::Statistic;
     if (row.matte) mattes.push_back(layer.column);
     if (row.part) column_of_part[static_cast<size_t>(*row.part)] = layer.column;
     if (row.by_light_group) first_group = layer.column;
-    layers.push_back(std::move(layer));
   }
 }
 

@@ -27,7 +27,8 @@ struct AovPlan {
   bool any() const { return !layers.empty(); }
 
   std::vector<AovLayer> layers;
-  std::vector<const AovRow*> columns;  ///< The row of each array.
+  std::vector<const AovRow*> columns;  ///< The row of each array: those of means first,
+  size_t means = 0;                    ///< which are so many; of the others a pixel has the nearest sample's.
   std::vector<int> mattes;             ///< Arrays of numbers that cryptomattes are made of.
   bool surfaces = false;               ///< Some row asks for the first surfaces.
   bool parts = false;                  ///< Some row asks how light got to the camera.
