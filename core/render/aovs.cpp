@@ -54,43 +54,55 @@ void depth(const FirstSurfaces& at, SampleValues to) {
   });
 }
 
-/// A fixed point in the unit cube: which lobe, and where in it. The golden ratio's relative for three dimensions
-/// (Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018) spreads any number of them evenly.
-Vec3f spread_point(int k) {
+/// A fixed point in the unit square: Roberts's relative of the golden ratio spreads any number of them evenly (The
+/// Unreasonable Effectiveness of Quasirandom Sequences, 2018).
+Vec2f spread_point(int k) {
   const auto fraction = [&](double step) {
     const double x = 0.5 + k * step;
     return static_cast<float>(x - std::floor(x));
   };
-  return {fraction(0.8191725133961645), fraction(0.6710436067037893), fraction(0.5497004779019703)};
+  return {fraction(0.7548776662466927), fraction(0.5698402909980532)};
 }
 
-/// The mean of fixed samples of the lobes of a run: the share of even light that comes back.
-RGBLanes mean_of_lobes(const MaterialRun& run, Arena& arena) {
+/// Adds to `sum` the share of even light that one lobe of a run sends back: the mean of fixed samples.
+void add_lobe(const MaterialRun& run, const Lobe& lobe, Arena& arena, const RGBLanes& sum) {
   constexpr int kSamples = 16;
   const int n = run.points.n;
-  const RGBLanes sum = arena.rgb(n), weight = arena.rgb(n);
-  float *const lobe = arena.floats(n), *const u = arena.floats(n), *const v = arena.floats(n);
+  LobeSet alone(arena);
+  alone.add(lobe);
+  alone.eta = run.lobes.eta;
+  const RGBLanes weight = arena.rgb(n);
+  float *const zero = arena.floats(n), *const u = arena.floats(n), *const v = arena.floats(n);
+  std::fill_n(zero, n, 0.0f);
   const LobeSamples samples{arena.vec3(n), weight, arena.floats(n), arena.floats(n)};
-  for_lanes(n, [&](int i) { sum.set(i, RGB(0.0f)); });
   for (int k = 0; k < kSamples; ++k) {
     const ArenaScope scratch(arena);
-    const Vec3f at = spread_point(k);
-    for_lanes(n, [&](int i) { lobe[i] = at.x, u[i] = at.y, v[i] = at.z; });
-    sample_lobes(run.lobes, run.points, run.frame, lobe, u, v, LobeKinds::All, samples);
+    const Vec2f at = spread_point(k);
+    for_lanes(n, [&](int i) { u[i] = at.x, v[i] = at.y; });
+    sample_lobes(alone, run.points, run.frame, zero, u, v, LobeKinds::All, samples);
     // Refraction concentrates radiance; no light is made or lost by that.
     for_lanes(n, [&](int i) { sum.set(i, sum[i] + weight[i] * (samples.eta2[i] / kSamples)); });
+  }
+}
+
+/// Lobe by lobe: which of several a fixed sample chooses would change in steps.
+RGBLanes sum_of_lobes(const MaterialRun& run, Arena& arena) {
+  const RGBLanes sum = arena.rgb(run.points.n);
+  for_lanes(run.points.n, [&](int i) { sum.set(i, RGB(0.0f)); });
+  for (int l = 0; l < run.lobes.count; ++l) {
+    const ArenaScope scratch(arena);
+    add_lobe(run, run.lobes.lobes[l], arena, sum);
   }
   return sum;
 }
 
 void albedo(const FirstSurfaces& at, SampleValues to) {
   for (const MaterialRun& run : at.points.materials) {
-    if (run.lobes.count == 0) continue;
     const ArenaScope scratch(*run.points.arena);
-    const RGBLanes mean = mean_of_lobes(run, *run.points.arena);
+    const RGBLanes sum = sum_of_lobes(run, *run.points.arena);
     const int32_t* const slot = at.points.rays.slot + run.first;
     for (int i = 0; i < run.points.n; ++i) {
-      for (int c = 0; c < 3; ++c) to[c][slot[i]] = std::clamp(mean[i][c], 0.0f, 1.0f);
+      for (int c = 0; c < 3; ++c) to[c][slot[i]] = std::clamp(sum[i][c], 0.0f, 1.0f);
     }
   }
 }
@@ -199,8 +211,8 @@ const std::vector<AovRow>& table() {
       as_colour(
           of_surface("albedo", rgb("Albedo"), SurfaceMean,
                      "Share of even light from all around that the surface sends to the camera, its mirrors and "
-                     "boundaries included: the mean of 16 fixed samples of its lobes, 0 to 1. Of integrators that "
-                     "ask for no materials 0.",
+                     "boundaries included: by 16 fixed samples of each lobe, 0 to 1. Of integrators that ask for no "
+                     "materials 0.",
                      albedo)),
       of_surface("N", xyz("N"), SurfaceDirection, "Shading normal in the world, with bumps.", shading_normal),
       of_surface("Ng", xyz("Ng"), SurfaceDirection, "Geometric normal in the world.", geometric_normal),

@@ -294,6 +294,15 @@ class Statistics(AovCase):
         self.assertAlmostEqual(float(claimed.mean() / empirical.mean()), 1, delta=0.2)
         self.assert_near(runs[0].channels["samples"], 8, 0)
 
+    def test_samples_that_are_no_numbers_are_in_nothing(self):
+        # A sky of negative luminance: no sample that sees it is valid.
+        scene = self.scene(SQUARE).replace("WorldBegin", 'WorldBegin LightSource "infinite" "rgb L" [-90 1 1]')
+        path, done = self.run_whit(scene, "--type", "float", "--aov", "samples,emission,direct,albedo,P,material")
+        self.assertIn("samples were not valid", done.stderr)
+        picture = Picture(path)
+        for name, channel in picture.channels.items():
+            self.assert_near(channel[:8], -1 if name == "material.id" else 0, 0, name)
+
     def test_variance_of_one_sample_is_not_known(self):
         import numpy  # pylint: disable=import-outside-toplevel
         picture = self.render(self.scene(SQUARE, spp=1), "variance,samples")
