@@ -54,6 +54,38 @@ void depth(const FirstSurfaces& at, SampleValues to) {
   });
 }
 
+/// A time in seconds, over the interval in which transforms move.
+double shutter_time(const Scene& scene, float seconds) {
+  const double span = scene.time_end - scene.time_start;
+  return span != 0 ? std::clamp((static_cast<double>(seconds) - scene.time_start) / span, 0.0, 1.0) : 0.0;
+}
+
+/// How far a point goes through the picture, with its shape and the camera, while the shutter is open.
+void screen_motion(const FirstSurfaces& at, SampleValues to) {
+  const Scene& scene = at.scene;
+  const std::optional<Mat4d> to_ndc = scene.camera().to_ndc();
+  const float* const time = at.points.rays.time;
+  if (!time || !to_ndc) return;
+  const double open = shutter_time(scene, scene.camera().shutter_open);
+  const double close = shutter_time(scene, scene.camera().shutter_close);
+  const Vec2d pixels(scene.camera().film.resolution);
+  write(at, to, [&](int i) {
+    const Vec3d p(at.points.at.p[i]);
+    const int instance = at.points.hits.instance[i];
+    const auto shape_to_render = [&](double when) {
+      return instance < 0 ? Mat4d()
+                          : interpolate_keys(scene.keys_of(scene.instances[static_cast<size_t>(instance)]), when);
+    };
+    const Vec3d on_shape = transform_point(shape_to_render(static_cast<double>(time[i])).inverse(), p);
+    const auto pixel_at = [&](double when) {
+      const Mat4d to_camera = interpolate_keys(scene.camera_keys, when).inverse();
+      const Vec3d ndc = transform_point(shape_to_render(when) * to_camera * *to_ndc, on_shape);
+      return Vec2d(ndc.x, ndc.y) * pixels;
+    };
+    return Vec2f(pixel_at(close) - pixel_at(open));
+  });
+}
+
 /// A fixed point in the unit square: Roberts's relative of the golden ratio spreads any number of them evenly (The
 /// Unreasonable Effectiveness of Quasirandom Sequences, 2018).
 Vec2f spread_point(int k) {
@@ -221,6 +253,11 @@ const std::vector<AovRow>& table() {
           of_surface("Z", {"Z"}, Nearest,
                      "Depth along the camera's axis, in the world's units; infinite where there is nothing.", depth),
           std::numeric_limits<float>::infinity()),
+      of_surface(
+          "motion", {"motion.X", "motion.Y"}, Nearest,
+          "Pixels by which the point moves, right and down, from the shutter's opening to its closing; of cameras "
+          "whose picture is no projection 0.",
+          screen_motion),
       with_names(of_surface("material", {"material.id"}, Nearest,
                             "Number of the material, -1 for none. The header's whit:materials says what it stands for; "
                             "with cryptomattes.",

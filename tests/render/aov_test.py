@@ -178,6 +178,20 @@ class Values(AovCase):
                 self.assert_near(picture.layer(normal, "XYZ")[self.INSIDE], [0, 0, 1], 1e-6, normal)
                 self.assert_near(picture.layer(normal, "XYZ")[0, 0], 0, 0)
 
+    def test_motion_is_that_of_shapes_and_of_the_camera(self):
+        # Half a unit to the right while the shutter is open, of 0.25 units a pixel.
+        moved = self.scene(SQUARE, integrator="path").replace(
+            "Shape", "ActiveTransform EndTime Translate 0.5 0 0 ActiveTransform All Shape")
+        self.assert_near(self.render(moved, "motion").layer("motion", "XY")[14:18, 19:22], [2, 0], 1e-4)
+        # Where the shutter closes at half the time it is half of that.
+        half = moved.replace('"float fov" [90]', '"float fov" [90] "float shutterclose" [0.5]')
+        self.assert_near(self.render(half, "motion").layer("motion", "XY")[14:18, 19:22], [1, 0], 1e-4)
+        # The world sinks by 0.25 units before the camera, which is a pixel down.
+        lifted = self.scene(SQUARE).replace(
+            "Camera", "ActiveTransform EndTime Translate 0 -0.25 0 ActiveTransform All Camera")
+        self.assert_near(self.render(lifted, "motion").layer("motion", "XY")[14:18, 18:22], [0, 1], 1e-4)
+        self.assert_near(self.square("motion").layer("motion", "XY"), 0, 0)
+
     def test_nearest_is_the_sample_nearest_to_the_middle(self):
         import numpy  # pylint: disable=import-outside-toplevel
         # With many samples one of them is near the middle: 256 have one within 1/16 of a pixel, or nearly, of 1/4 unit.
@@ -383,7 +397,7 @@ class Mattes(AovCase):
 
 @unittest.skipUnless(WHIT, "the program is not built")
 class Promises(AovCase):
-    ALL = "albedo,N,Ng,P,Z,material,shape,lightgroups,variance,samples," + ",".join(PARTS)
+    ALL = "albedo,N,Ng,P,Z,motion,material,shape,lightgroups,variance,samples," + ",".join(PARTS)
 
     def assert_same(self, a, b, what):
         self.assertEqual(sorted(a.channels), sorted(b.channels))
