@@ -44,6 +44,10 @@ void position(const FirstSurfaces& at, SampleValues to) {
   write(at, to, [&](int i) { return Vec3f(transform_point(to_world, Vec3d(at.points.at.p[i]))); });
 }
 
+void parameters(const FirstSurfaces& at, SampleValues to) {
+  write(at, to, [&](int i) { return Vec2f(at.points.at.u[i], at.points.at.v[i]); });
+}
+
 void depth(const FirstSurfaces& at, SampleValues to) {
   const float* const time = at.points.rays.time;
   const Mat4d still = at.scene.camera_keys.front().inverse();
@@ -253,6 +257,7 @@ const std::vector<AovRow>& table() {
           of_surface("Z", {"Z"}, Nearest,
                      "Depth along the camera's axis, in the world's units; infinite where there is nothing.", depth),
           std::numeric_limits<float>::infinity()),
+      of_surface("uv", {"uv.U", "uv.V"}, Nearest, "Surface parameters, which textures are laid out by.", parameters),
       of_surface(
           "motion", {"motion.X", "motion.Y"}, Nearest,
           "Pixels by which the point moves, right and down, from the shutter's opening to its closing; of cameras "

@@ -178,6 +178,13 @@ class Values(AovCase):
                 self.assert_near(picture.layer(normal, "XYZ")[self.INSIDE], [0, 0, 1], 1e-6, normal)
                 self.assert_near(picture.layer(normal, "XYZ")[0, 0], 0, 0)
 
+    def test_surface_parameters(self):
+        # From 0 to 1 across the two units of the square, at the point of the same sample.
+        picture = self.square("uv,P")
+        at = (picture.layer("P", "XYZ")[..., :2] - [99, 19]) / 2
+        self.assert_near(picture.layer("uv", "UV")[self.INSIDE], at[self.INSIDE], 1e-5)
+        self.assert_near(picture.layer("uv", "UV")[0, 0], 0, 0)
+
     def test_motion_is_that_of_shapes_and_of_the_camera(self):
         # Half a unit to the right while the shutter is open, of 0.25 units a pixel.
         moved = self.scene(SQUARE, integrator="path").replace(
@@ -397,7 +404,7 @@ class Mattes(AovCase):
 
 @unittest.skipUnless(WHIT, "the program is not built")
 class Promises(AovCase):
-    ALL = "albedo,N,Ng,P,Z,motion,material,shape,lightgroups,variance,samples," + ",".join(PARTS)
+    ALL = "albedo,N,Ng,P,Z,uv,motion,material,shape,lightgroups,variance,samples," + ",".join(PARTS)
 
     def assert_same(self, a, b, what):
         self.assertEqual(sorted(a.channels), sorted(b.channels))
