@@ -125,7 +125,7 @@ struct Scene {
   std::vector<SceneEnvironment> environments;  ///< Lights that escaped rays see.
   std::vector<Mat4d> camera_keys;              ///< Camera to render space at evenly spaced times.
   double time_start = 0, time_end = 1;         ///< Times of the first and last key.
-  bool any_touched = false;  ///< Whether the end of some light is (RayEnd::touched).
+  bool any_touched = false;                    ///< Whether the end of some light is (RayEnd::touched).
   int light_dimensions = 0;                    ///< Sample dimensions that the lights of one bounce use.
   int samples_per_pixel = 1;
   int sort_keys = 0;           ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
