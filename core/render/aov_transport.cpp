@@ -4,8 +4,8 @@ namespace whit {
 namespace {
 
 /// Light that a camera ray sees is emission. What a sampled direction meets right behind the first surface is direct
-/// light, the same as that of samples of lights: the two share it by their densities. (Mirrors and smooth boundaries have
-/// no such share.)
+/// light, the same as that of samples of lights: the two share it by their densities. Mirrors and smooth boundaries
+/// have no such share.
 LightPart part_of(const Rays& rays, int ray, bool seen) {
   if (rays.depth == 0) return seen ? LightPart::Emission : LightPart::Direct;
   switch (static_cast<Via>(rays.via[ray])) {

@@ -1,6 +1,6 @@
 // Cryptomatte 1.2: which things cover a pixel, and how much of it, under hashes of their names.
-// Source: Friedman and Jones, Fully Automatic ID Mattes with Support for Motion Blur and Transparency, SIGGRAPH 2015, and
-// the specification at github.com/Psyop/Cryptomatte.
+// Source: Friedman and Jones, Fully Automatic ID Mattes with Support for Motion Blur and Transparency, SIGGRAPH 2015,
+// and the specification at github.com/Psyop/Cryptomatte.
 #pragma once
 
 #include <cstdint>

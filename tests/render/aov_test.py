@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What pictures hold beside their colours: values that can be worked out by hand, parts that add up to the picture, names
-under their hashes, and the same bits however the picture is made.
+"""What pictures hold beside their colours: values that can be worked out by hand, parts that add up to the picture,
+names under their hashes, and the same bits however the picture is made.
 """
 import json
 import os
@@ -20,8 +20,8 @@ Sampler "%(sampler)s" "integer pixelsamples" [%(spp)d]
 Integrator "%(integrator)s" %(depth)s
 """
 
-# A square of matte, 2 units wide, 4 units before a camera that sees 2 * 4 * tan(45 degrees) = 8 units of its plane along
-# the shorter side. Moved to (100, 20, 3), so that the world is not the camera's space.
+# A square of matte, 2 units wide, 4 units before a camera that sees 2 * 4 * tan(45 degrees) = 8 units of its plane
+# along the shorter side. Moved to (100, 20, 3), so that the world is not the camera's space.
 SQUARE = HEAD + """
 LookAt 100 20 -1  100 20 3  0 1 0
 Camera "perspective" "float fov" [90]
@@ -35,7 +35,7 @@ WorldBegin
 WorldEnd
 """
 
-# All ways that light can go: a mirror, glass, a glossy and a matte surface, an emitter that is seen, a point, and a sky.
+# All ways that light can go: a mirror, glass, a glossy and a matte surface, an emitter that is seen, a point, a sky.
 ROOM = HEAD + """
 LookAt 0 2 -7  0 1 0  0 1 0
 Camera "perspective" "float fov" [40]
@@ -154,8 +154,8 @@ class Values(AovCase):
         picture = self.render(self.scene(SQUARE, **{"integrator": "path", **values}), aovs)
         return picture
 
-    # The square's edges are at 1/4 of half the height of 32 pixels: 4 pixels from the middle of 40 x 32. Pixels 17 to 22
-    # and 13 to 18 see nothing else.
+    # The square's edges are at 1/4 of half the height of 32 pixels: 4 pixels from the middle of 40 x 32. Pixels 17 to
+    # 22 and 13 to 18 see nothing else.
     INSIDE = (slice(13, 19), slice(17, 23))
 
     def test_positions_and_depth(self):
@@ -235,7 +235,8 @@ class Values(AovCase):
 
     def test_camera_with_parallel_rays(self):
         import numpy  # pylint: disable=import-outside-toplevel
-        text = self.scene(SQUARE).replace('"perspective" "float fov" [90]', '"orthographic" "float screenwindow" [-2 3 -1 3]')
+        text = self.scene(SQUARE).replace('"perspective" "float fov" [90]',
+                                           '"orthographic" "float screenwindow" [-2 3 -1 3]')
         to_ndc = numpy.array(self.render(text, "Z").header["worldToNDC"], "float64").reshape(4, 4)
         ndc = numpy.array([101, 21, 3, 1]) @ to_ndc
         self.assert_near(ndc[:2] / ndc[3], [3 / 5, 2 / 4], 1e-5)
@@ -267,7 +268,8 @@ class Parts(AovCase):
         picture = self.render(self.scene(ROOM, integrator="path", width=80, height=60), ",".join(PARTS))
         # The mirror's middle, the glass's, and the sky above: see albedo.
         self.assert_near(picture.layer("reflection")[32, 21], picture.rgb()[32, 21], 1e-6)
-        self.assert_near((picture.layer("refraction") + picture.layer("reflection"))[32, 40], picture.rgb()[32, 40], 1e-6)
+        glass = picture.layer("refraction") + picture.layer("reflection")
+        self.assert_near(glass[32, 40], picture.rgb()[32, 40], 1e-6)
         self.assert_near(picture.layer("emission")[0, 0], picture.rgb()[0, 0], 1e-6)
         # Glass lets through far more than it reflects: 4 % at each side of its middle.
         self.assertGreater(picture.layer("refraction")[32, 40].sum(), picture.layer("reflection")[32, 40].sum())
@@ -309,8 +311,8 @@ class Statistics(AovCase):
         runs = [self.render(scene, "variance,samples", "--seed", str(seed)) for seed in range(60)]
         empirical = numpy.var([r.rgb() for r in runs], axis=0, ddof=1)
         claimed = numpy.mean([r.layer("variance") for r in runs], axis=0)
-        # Both estimate the same; over 320 pixels the means agree to some per cent (60 runs: sqrt(2 / 59) of each pixel's,
-        # and what is bright weighs most).
+        # Both estimate the same; over 320 pixels the means agree to some per cent (60 runs: sqrt(2 / 59) of each
+        # pixel's, and what is bright weighs most).
         self.assertAlmostEqual(float(numpy.median(claimed / empirical)), 1, delta=0.1)
         self.assertAlmostEqual(float(claimed.mean() / empirical.mean()), 1, delta=0.2)
         self.assert_near(runs[0].channels["samples"], 8, 0)
