@@ -54,6 +54,14 @@ float Tracer::expected_samples(int light, const Vec3f& p) const {
   return static_cast<float>(scene_.lights[static_cast<size_t>(light)].samples);
 }
 
+namespace {
+
+/// Whether a light is asked for the points it chose: rays then end there, and not before the light, whose own surface
+/// must be told from others in double precision.
+bool gives_points(const SceneLight& light) { return light.end.on == RayEnd::On::Plane && light.end.touched; }
+
+}  // namespace
+
 DirectSamples Tracer::sample(const Points& points, int light_number, int number, int of, bool densities) {
   const SceneLight& light = scene_.lights[static_cast<size_t>(light_number)];
   DirectSamples s = allocate_samples(points, densities && light.dimension >= 0);
@@ -68,7 +76,7 @@ DirectSamples Tracer::sample(const Points& points, int light_number, int number,
     }
     s.u = numbers.u, s.v = numbers.v;
   }
-  if (light.end.on == RayEnd::On::Plane && light.end.touched) s.q = arena_.vec3(points.n);
+  if (gives_points(light)) s.q = arena_.vec3(points.n);
   light.light->sample(s);
   if (of == 1) return s;
   const auto count = static_cast<float>(of);
@@ -80,8 +88,9 @@ DirectSamples Tracer::sample(const Points& points, int light_number, int number,
 
 namespace {
 
-/// The samples of some lanes of a batch, with arrays of their own for what lights write.
-LightSamples gathered_samples(const DirectSamples& s, const int32_t* lanes, int n, bool densities, Arena& arena) {
+/// The samples of some lanes of a batch, with arrays of their own for what one light writes.
+LightSamples gathered_samples(const DirectSamples& s, const int32_t* lanes, int n, const SceneLight& light,
+                              Arena& arena) {
   LightSamples part;
   const Vec3Lanes p = arena.vec3(n);
   float *u = arena.floats(n), *v = arena.floats(n);
@@ -90,8 +99,8 @@ LightSamples gathered_samples(const DirectSamples& s, const int32_t* lanes, int 
   gather(lanes, n, s.v, v);
   part.n = n, part.arena = &arena, part.p = p, part.u = u, part.v = v;
   part.wi = arena.vec3(n), part.distance = arena.floats(n), part.radiance = arena.rgb(n);
-  if (s.q) part.q = arena.vec3(n);
-  if (densities) part.pdf = arena.floats(n);
+  if (gives_points(light)) part.q = arena.vec3(n);
+  if (light.dimension >= 0) part.pdf = arena.floats(n);
   return part;
 }
 
@@ -118,7 +127,7 @@ DirectSamples Tracer::sample_one(const Points& points, int dimension) {
     const SceneLight& from = scene_.lights[static_cast<size_t>(number)];
     const int32_t* const lanes = order + first;
     const int count = last - first;
-    const LightSamples part = gathered_samples(s, lanes, count, from.dimension >= 0, arena_);
+    const LightSamples part = gathered_samples(s, lanes, count, from, arena_);
     from.light->sample(part);
     for (int i = 0; i < count; ++i) {
       const int to = lanes[i];
@@ -128,7 +137,7 @@ DirectSamples Tracer::sample_one(const Points& points, int dimension) {
       s.radiance.set(to, part.radiance[i] * (1 / chosen));
       // No direction that is sampled otherwise meets a delta light.
       s.pdf[to] = part.pdf ? chosen * part.pdf[i] : std::numeric_limits<float>::infinity();
-      if (s.q) s.q.set(to, part.q[i]);
+      if (s.q) s.q.set(to, part.q ? part.q[i] : s.p[to] + part.wi[i] * part.distance[i]);
     }
   }
   return s;

@@ -106,13 +106,15 @@ class OneMean(Pictures):
     EYE = "0 -3 2.5  0 0 0  0 0 1"
     LAMP = 'Material "matte" "rgb Kd" [0 0 0] AreaLightSource "diffuse" "rgb L" [4 4 4]\n'
 
+    SQUARE = 'Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point P" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0]\n'
+
     def lamp(self, shape):
         return "AttributeBegin Translate 0 0.8 1.2\n" + self.LAMP + shape + "\nAttributeEnd\n"
 
     def test_direct_light_by_samples_of_lights_of_lobes_and_of_both(self):
         for shape in ('Shape "sphere" "float radius" [0.5]', 'Rotate 180 1 0 0 Shape "disk" "float radius" [0.6]',
                       'Shape "cylinder" "float radius" [0.3] "float zmin" [-0.4] "float zmax" [0.4]',
-                      'Shape "trianglemesh" "integer indices" [0 2 1 0 3 2] "point P" [-.5 -.5 0  .5 -.5 0  .5 .5 0  -.5 .5 0]'):
+                      self.SQUARE):
             with self.subTest(shape=shape):
                 world = self.lamp(shape) + self.FLOOR
                 # An emitter in an object is seen, and not sampled: only sampled directions find it.
@@ -131,6 +133,19 @@ class OneMean(Pictures):
         for integrator in ('"directlighting"', path(1)):
             with self.subTest(integrator=integrator):
                 self.have_one_mean(by_light, self.render(integrator, sky + self.FLOOR, eye=self.EYE, spp=256))
+
+    def test_lights_some_of_which_lie_on_a_surface(self):
+        # The spot is in the plane of a sheet, where rays end more exactly; that of the panel, which few or no rays to the spot
+        # go along with, must neither end on the panel itself nor go through what is before it.
+        panel = "AttributeBegin Translate 0 0.3 1.2 " + self.LAMP + self.SQUARE + "AttributeEnd\n"
+        spot = 'LightSource "spot" "point from" [-0.7 0 0.8] "point to" [-0.7 0 0] "rgb I" [1 1 1]\n'
+        sheet = "AttributeBegin Translate -0.8 0 0.8 Scale 0.8 0.6 1 " + self.SQUARE + "AttributeEnd\n"
+        for name, world in (("panel first", panel + spot), ("spot first", spot + panel)):
+            by_light = self.render('"whitted"', world + self.FLOOR + sheet, eye=self.EYE, fov=50, spp=64)
+            for integrator in (path(1), '"directlighting" "string strategy" "one"'):
+                with self.subTest(lights=name, integrator=integrator):
+                    pixels = self.render(integrator, world + self.FLOOR + sheet, eye=self.EYE, fov=50, spp=64)
+                    self.have_one_mean(by_light, pixels)
 
     def test_samples_of_a_light(self):
         lamp = self.lamp('Shape "sphere" "float radius" [0.5]')
