@@ -30,7 +30,8 @@ class RayQueue {
   void reserve(int capacity);
   /// The next n of the room, for the caller to fill: all of them rays from now on.
   Rays append(int n);
-  void clear() { rays_.n = 0; }
+  /// No rays, of this depth from now on. Their memory stays.
+  void start(int depth) { rays_.n = 0, rays_.depth = depth; }
 
  private:
   Rays rays_;  ///< Before the first reserve(), arrays that are carried point to nothing of use.

@@ -138,7 +138,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   });
   if (scene.plan.live(Effect::MotionBlur)) sample_times(worker, keys);
 
-  worker.level(0).clear();
+  worker.level(0).start(0);
   const Rays rays = worker.level(0).append(n);
   CameraRays out;
   out.n = n;
@@ -210,13 +210,15 @@ void trace_chunk(Worker& worker, const Wrap& wrap) {
   stack.assign(1, {0, 0});
   while (!stack.empty()) {
     const int depth = stack.back().depth, begin = stack.back().next;
-    const RayQueue& next = worker.level(depth + 1);
+    const int waiting = worker.level(depth + 1).n();
     const Rays& rays = worker.level(depth).rays();
-    if (next.n() >= kBatch || (begin == rays.n && next.n() > 0)) {
-      stack.push_back({depth + 1, 0});
-    } else if (begin == rays.n) {
-      worker.level(depth).clear();
+    if (begin == rays.n) {
+      worker.leave(depth);
       stack.pop_back();
+      if (waiting > 0) stack.push_back({depth + 1, 0});
+      else worker.leave(depth + 1);
+    } else if (waiting >= kBatch) {
+      stack.push_back({depth + 1, 0});
     } else {
       const int end = end_of_group(rays, begin);
       stack.back().next = end;

@@ -26,18 +26,33 @@ void Worker::stop_clock() {
 }
 
 RayQueue& Worker::level(int depth) {
-  const Integrator& integrator = scene.integrator();
-  while (levels_.size() <= static_cast<size_t>(depth)) {
-    const auto next = static_cast<int>(levels_.size());
-    CarriedByRays carried;
-    carried.differentials = scene.plan.needs_differentials() && (next == 0 || integrator.keeps_differentials());
-    carried.time = scene.plan.live(Effect::MotionBlur);
-    carried.densities = integrator.keeps_densities();
-    carried.eta2 = integrator.keeps_densities() && scene.plan.live(Effect::Refraction);
-    carried.via = aovs && aovs->parts;
-    levels_.emplace_back(next, carried);
+  const auto number = static_cast<size_t>(depth);
+  if (number >= levels_.size()) levels_.resize(number + 1, nullptr);
+  RayQueue*& queue = levels_[number];
+  if (queue) return *queue;
+  if (depth > 0 && !unused_.empty()) {
+    queue = unused_.back();
+    unused_.pop_back();
+    queue->start(depth);
+    return *queue;
   }
-  return levels_[static_cast<size_t>(depth)];
+  const Integrator& integrator = scene.integrator();
+  CarriedByRays carried;
+  carried.differentials = scene.plan.needs_differentials() && (depth == 0 || integrator.keeps_differentials());
+  carried.time = scene.plan.live(Effect::MotionBlur);
+  carried.densities = integrator.keeps_densities();
+  carried.eta2 = integrator.keeps_densities() && scene.plan.live(Effect::Refraction);
+  carried.via = aovs && aovs->parts;
+  queue = &queues_.emplace_back(depth, carried);
+  return *queue;
+}
+
+void Worker::leave(int depth) {
+  RayQueue*& queue = levels_[static_cast<size_t>(depth)];
+  queue->start(depth);
+  if (depth == 0) return;
+  unused_.push_back(queue);
+  queue = nullptr;
 }
 
 }  // namespace whit

@@ -61,13 +61,17 @@ class Worker {
   };
   std::vector<Cursor> cursors;  ///< Of trace_chunk().
 
-  /// Rays waiting for their depth.
+  /// Rays waiting for their depth. The reference is good until the depth is left.
   RayQueue& level(int depth);
+  /// Says that no rays of a depth are left, so that their memory can be another's: a path may have a million depths.
+  void leave(int depth);
 
  private:
   const bool timed_;
   std::optional<StageClock> clock_;
-  std::deque<RayQueue> levels_;  ///< A deque: references stay good while it grows.
+  std::deque<RayQueue> queues_;    ///< A deque: references stay good while it grows.
+  std::vector<RayQueue*> levels_;  ///< By depth; null for those that were left, or not yet come to.
+  std::vector<RayQueue*> unused_;  ///< Of depths that were left. Rays of the camera, which may carry more, keep theirs.
 };
 
 }  // namespace whit

@@ -38,7 +38,10 @@ struct DirectLighting final : Integrator {
     if (samples_all()) {
       for (const int light : lights(t, points)) {
         const int of = t.samples_of(light);
-        for (int k = 0; k < of; ++k) add_sampled(points, t.sample(points, light, k, of, true), t);
+        for (int k = 0; k < of; ++k) {
+          const ArenaScope scratch(t.arena());
+          add_sampled(points, t.sample(points, light, k, of, true), t);
+        }
       }
     } else {
       add_sampled(points, t.sample_one(points, own + kLight), t);

@@ -8,6 +8,7 @@ the filter is a box of one pixel.
 import json
 import math
 import os
+import re
 import subprocess
 import tempfile
 import unittest
@@ -198,6 +199,42 @@ class AmbientOcclusion(Pictures):
         # Materials and lights are nothing to it; nor is the side that is seen.
         dressed = 'LightSource "infinite" Material "mirror" AreaLightSource "diffuse" ReverseOrientation ' + PLANE
         self.assertLess(abs(self.render('"ambientocclusion"', dressed, spp=1) - math.pi).max(), 1e-5)
+
+
+@unittest.skipUnless(WHIT, "the program is not built")
+class Memory(unittest.TestCase):
+    """What is asked for a million times is asked for in the same memory."""
+
+    def peak(self, integrator, world, spp):
+        """MiB, of one pixel."""
+        scene = SCENE % {"size": 1, "sampler": "random", "spp": spp, "integrator": integrator, "eye": "0.3 0.2 0  1 0.5 0.7  0 0 1",
+                         "fov": 90, "world": world}
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run([WHIT, "--nthreads", "1", "--display", "none", "-o", folder + "/p.exr"], input=scene,
+                                  capture_output=True, text=True, check=False, cwd=folder)
+        said = done.stdout + done.stderr
+        self.assertEqual(done.returncode, 0, said)
+        self.assertIn("invalid samples 0.", said)
+        return int(re.search(r"peak memory (\d+) MiB", said).group(1))
+
+    def test_depths(self):
+        # A queue of rays takes 4 KiB or more: one for each depth would take 400 MiB.
+        room = 'LightSource "infinite" Material %s Shape "sphere" "float radius" [2]'
+        for integrator, material in (("path", "matte"), ("path", "mirror"), ("directlighting", "mirror"), ("whitted", "mirror")):
+            with self.subTest(integrator=integrator, material=material):
+                deep = '"%s" "integer maxdepth" [100000] %s' % (integrator, '"float rrthreshold" [0]' if integrator == "path" else "")
+                albedo = '"%s" "rgb %s" [1 1 1]' % (material, "Kd" if material == "matte" else "Kr")
+                self.assertLess(self.peak(deep, room % albedo, 8), 100)
+
+    def test_samples_of_a_light(self):
+        # The arrays of one sample for 64 points take about 8 KiB.
+        lamp = 'AttributeBegin AreaLightSource "diffuse" "integer samples" [100000] Translate 0 0 1 Shape "sphere" ' \
+            '"float radius" [0.1] AttributeEnd\nShape "sphere" "float radius" [2]'
+        self.assertLess(self.peak('"directlighting"', lamp, 64), 100)
+
+    def test_directions_of_ambient_occlusion(self):
+        room = 'Shape "sphere" "float radius" [2]'
+        self.assertLess(self.peak('"ambientocclusion" "integer nsamples" [100000]', room, 64), 100)
 
 
 class Every(Pictures):
