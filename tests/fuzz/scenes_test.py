@@ -5,7 +5,8 @@
 
 Run I is a function of I alone: one to four mutations (tokens lost, doubled and exchanged, numbers at their extremes, wrong
 types, lists cut and grown, statements moved and borrowed from other scenes, bytes that are no text) of one scene of this
-repository, rendered at a quarter of its size with one sample a pixel. --runs 1 --first I --keep DIR shows one again.
+repository, often under another integrator with parameters that make sense or none, rendered at a quarter of its size with
+one sample a pixel. --runs 1 --first I --keep DIR shows one again.
 As a test, 500 runs.
 """
 import argparse
@@ -35,6 +36,15 @@ EXTREMES = [b"0", b"-0", b"1", b"-1", b"0.5", b"1e-45", b"1e-38", b"1e-30", b"1e
             b"-2147483648", b"4294967296", b"65536", b"nan", b"inf", b"-inf", b"1e", b"0x10", b"7.5", b"-3"]
 TYPES = [b"float", b"integer", b"bool", b"string", b"rgb", b"color", b"xyz", b"spectrum", b"blackbody", b"texture", b"point",
          b"point2", b"point3", b"vector", b"vector2", b"normal", b"normal3", b"double"]
+INTEGRATORS = [b"ambientocclusion", b"directlighting", b"path", b"whitted", b"volpath"]
+# Counts of directions that end within the time, and what is no count.
+INTEGRATOR_PARAMETERS = {
+    b"integer maxdepth": EXTREMES, b"float rrthreshold": EXTREMES,
+    b"integer nsamples": [b"1", b"2", b"100", b"0", b"-1", b"2147483648", b"nan"],
+    b"bool cossample": [b'"true"', b'"false"', b'"maybe"', b"1"],
+    b"string strategy": [b'"one"', b'"all"', b'"none"', b"1"],
+    b"string lightsamplestrategy": [b'"uniform"', b'"power"', b'"spatial"', b'"Spatial"', b'""', b"0.5"],
+    b"integer pixelbounds": [b"0 9 0 9", b"3 9", b"-2147483648 2147483647 0 9", b"9 3 0 9", b"5"]}
 
 
 class Scene:
@@ -57,6 +67,8 @@ class Mutator:
         for _ in range(self.rng.randint(1, 4)):
             if self.tokens:
                 self.rng.choice(self.mutations)()
+        if self.rng.random() < 0.6:
+            self.integrator()
         return b"".join(self.tokens)
 
     def places(self, wanted, tokens=None):
@@ -155,6 +167,13 @@ class Mutator:
         first, last = self.rng.choice(self.lines(other))
         to, _ = self.a_line()
         self.tokens[to:to] = other[first:last] + [b"\n"]
+
+    def integrator(self):
+        """An integrator of its own at the end of the camera's part, with some of what the integrators know."""
+        named = self.rng.sample(sorted(INTEGRATOR_PARAMETERS), self.rng.randint(0, 3))
+        parameters = b" ".join(b'"%s" [%s]' % (n, self.rng.choice(INTEGRATOR_PARAMETERS[n])) for n in named)
+        begin = next((i for i, t in enumerate(self.tokens) if t == b"WorldBegin"), 0)
+        self.tokens[begin:begin] = [b'Integrator "%s" %s\n' % (self.rng.choice(INTEGRATORS), parameters)]
 
     def end_early(self):
         del self.tokens[self.rng.randrange(len(self.tokens)):]
