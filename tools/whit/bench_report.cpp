@@ -14,11 +14,9 @@ Json both_ends(const Spread& s) { return Json::Array{s.low, s.high}; }
 
 Json rays_per_second(const SceneFigures& f) {
   const RenderStatistics& s = f.statistics;
-  return Json::Object{{"camera", f.per_second(s.camera_rays)},
-                      {"reflection", f.per_second(s.reflection_rays)},
-                      {"refraction", f.per_second(s.refraction_rays)},
-                      {"shadow", f.per_second(s.shadow_rays)},
-                      {"all", f.per_second(s.rays())}};
+  return Json::Object{{"camera", f.per_second(s.camera_rays)},         {"reflection", f.per_second(s.reflection_rays)},
+                      {"refraction", f.per_second(s.refraction_rays)}, {"shadow", f.per_second(s.shadow_rays)},
+                      {"indirect", f.per_second(s.indirect_rays)},     {"all", f.per_second(s.rays())}};
 }
 
 Json shares_of_stages(const SceneFigures& f) {

@@ -56,9 +56,13 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
   say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times.parse),
                   duration_text(times.plan), duration_text(times.build), duration_text(times.render),
                   duration_text(times.write), r.threads, r.threads == 1 ? "" : "s"));
-  say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow; {:.2f} Mrays/s.", count_text(s.rays()),
-                  count_text(s.camera_rays), count_text(s.reflection_rays), count_text(s.refraction_rays),
-                  count_text(s.shadow_rays), s.rays() / std::max(1e-9, r.seconds) / 1e6));
+  const auto if_any = [](int64_t rays, const char* what) {
+    return rays > 0 ? fmt::format(", {} {}", count_text(rays), what) : std::string();
+  };
+  say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow{}{}; {:.2f} Mrays/s.",
+                  count_text(s.rays()), count_text(s.camera_rays), count_text(s.reflection_rays),
+                  count_text(s.refraction_rays), count_text(s.shadow_rays), if_any(s.indirect_rays, "indirect"),
+                  if_any(s.probe_rays, "from lobes to lights"), s.rays() / std::max(1e-9, r.seconds) / 1e6));
   say(fmt::format("{} samples per pixel, {} triangles, peak memory {}, invalid samples {}.", scene.samples_per_pixel,
                   count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
                   s.invalid_samples));
