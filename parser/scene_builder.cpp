@@ -619,7 +619,8 @@ void SceneBuilder::shape(Statement& s) {
   static_cast<Entity&>(out) = entity(s);
   if (out.object >= 0 && out.area_light >= 0 && out.area_light != warned_area_light_) {
     warned_area_light_ = out.area_light;
-    reporter_.warning(out.where, "area light inside an object definition", "it glows, but lights nothing");
+    reporter_.warning(out.where, "area light inside an object definition",
+                      "it glows; paths alone may meet it by chance");
   }
   scene().shapes.push_back(std::move(out));
 }

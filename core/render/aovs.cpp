@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "core/base/sampling.h"
 #include "core/lobe/eval.h"
 #include "core/render/points.h"
 #include "core/scene/motion.h"
@@ -90,16 +91,6 @@ void screen_motion(const FirstSurfaces& at, SampleValues to) {
   });
 }
 
-/// A fixed point in the unit square: Roberts's relative of the golden ratio spreads any number of them evenly (The
-/// Unreasonable Effectiveness of Quasirandom Sequences, 2018).
-Vec2f spread_point(int k) {
-  const auto fraction = [&](double step) {
-    const double x = 0.5 + k * step;
-    return static_cast<float>(x - std::floor(x));
-  };
-  return {fraction(0.7548776662466927), fraction(0.5698402909980532)};
-}
-
 /// Adds to `sum` the share of even light that one lobe of a run sends back: the mean of fixed samples.
 void add_lobe(const MaterialRun& run, const Lobe& lobe, Arena& arena, const RGBLanes& sum) {
   constexpr int kSamples = 16;
@@ -113,7 +104,7 @@ void add_lobe(const MaterialRun& run, const Lobe& lobe, Arena& arena, const RGBL
   const LobeSamples samples{arena.vec3(n), weight, arena.floats(n), arena.floats(n)};
   for (int k = 0; k < kSamples; ++k) {
     const ArenaScope scratch(arena);
-    const Vec2f at = spread_point(k);
+    const Vec2f at = lattice_point({0.5f, 0.5f}, k);
     for_lanes(n, [&](int i) { u[i] = at.x, v[i] = at.y; });
     sample_lobes(alone, run.points, run.frame, zero, u, v, LobeKinds::All, samples);
     // Refraction concentrates radiance; no light is made or lost by that.

@@ -56,7 +56,8 @@ std::optional<Emission> emission_of(const BuildContext& context, const ShapeDesc
   const AreaLight* light = context.scene.bound.emission_of(description);
   if (is_moving || !light || !context.scene.plan.needed.has(Effect::AreaLights)) return {};
   if (is_curve) {
-    context.diagnostics.warning(description.where, "a curve cannot light other surfaces", "it glows, and that is all");
+    context.diagnostics.warning(description.where, "a curve cannot light other surfaces",
+                                "it glows; paths alone may meet it by chance");
   }
   // A curve always faces the ray, so it has no back that could be dark.
   return Emission{light->radiance(), light->two_sided() || is_curve, light->sample_count(), &light->group};
