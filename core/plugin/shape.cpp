@@ -186,18 +186,19 @@ double AnalyticShape::density_from(const Vec3d& ref, const Vec3d& p) const {
   return std::isfinite(pdf) && pdf > 0 ? pdf : 0;
 }
 
+void set_sample(const ShapeSampleLanes& s, int i, const ShapeSample& sample) {
+  const Vec3d to = sample.p - Vec3d(s.ref[i]);
+  const double distance = to.length();
+  const Vec3d wi = distance > 0 ? to / distance : Vec3d(0, 0, 1);
+  s.wi.set(i, Vec3f(wi));
+  s.distance[i] = static_cast<float>(distance);
+  s.cosine[i] = static_cast<float>(-sample.n.dot(wi));
+  s.pdf[i] = distance > 0 ? static_cast<float>(sample.pdf) : 0.0f;
+}
+
 void AnalyticShape::sample_lanes(const ShapeSampleLanes& s) const {
-  for (int i = 0; i < s.n; ++i) {
-    const Vec3d ref(s.ref[i]);
-    const ShapeSample sample = sample_from(ref, static_cast<double>(s.u[i]), static_cast<double>(s.v[i]));
-    const Vec3d to = sample.p - ref;
-    const double distance = to.length();
-    const Vec3d wi = distance > 0 ? to / distance : Vec3d(0, 0, 1);
-    s.wi.set(i, Vec3f(wi));
-    s.distance[i] = static_cast<float>(distance);
-    s.cosine[i] = static_cast<float>(-sample.n.dot(wi));
-    s.pdf[i] = distance > 0 ? static_cast<float>(sample.pdf) : 0.0f;
-  }
+  for (int i = 0; i < s.n; ++i)
+    set_sample(s, i, sample_from(Vec3d(s.ref[i]), static_cast<double>(s.u[i]), static_cast<double>(s.v[i])));
 }
 
 }  // namespace whit

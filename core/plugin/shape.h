@@ -128,6 +128,9 @@ struct ShapeSampleLanes {
   float* pdf = nullptr;                    ///< Out: per solid angle at ref; 0 when the sample is useless.
 };
 
+/// Writes the i-th sample of a batch.
+void set_sample(const ShapeSampleLanes& s, int i, const ShapeSample& sample);
+
 /// A shape given by equations. It is placed once: object space to the space of its scene (render space, or
 /// the local space of an object definition).
 class AnalyticShape : public Shape {

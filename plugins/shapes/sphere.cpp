@@ -74,23 +74,21 @@ struct Sphere final : AnalyticShape {
   double density_from(const Vec3d& ref, const Vec3d& p) const override {
     const Cone cone(*this, ref);
     if (!whole_ || cone.stretch > kNearlyRound) return AnalyticShape::density_from(ref, p);
-    // A point of the sphere's own inside may be outside of it by rounding: it then finds the near side in all directions
-    // in which it should find the far one, and has the same light by the same density.
-    return cone.is_outside() ? cone.pdf() : 1 / (4 * kPiD);
+    return cone.is_outside() && !is_on_surface(cone, ref) ? cone.pdf() : 1 / (4 * kPiD);
   }
 
   void sample_lanes(const ShapeSampleLanes& s) const override {
     // Of the placement only, not of the reference point: any point does.
     const Cone placed(*this,
                       Vec3d(object_to_scene_[3][0], object_to_scene_[3][1], object_to_scene_[3][2]) + Vec3d(1, 0, 0));
-    if (!whole_ || placed.stretch >= kRound) return AnalyticShape::sample_lanes(s);
-    sample_cones(placed.center, placed.radius, s);
+    if (!whole_ || placed.stretch > kNearlyRound) return AnalyticShape::sample_lanes(s);
+    const bool round = placed.stretch < kRound;
+    if (round) sample_cones(placed.center, placed.radius, s);
     for (int i = 0; i < s.n; ++i) {
-      if (s.pdf[i] > 0) continue;
-      // Inside, or on the surface as far as one can tell.
-      const auto one = [i](const Vec3Lanes& v) { return v.from(i); };
-      AnalyticShape::sample_lanes(
-          {1, one(s.ref), s.u + i, s.v + i, one(s.wi), s.distance + i, s.cosine + i, s.pdf + i});
+      if (round && s.pdf[i] > 0) continue;
+      const Vec3d ref(s.ref[i]);
+      const double u0 = static_cast<double>(s.u[i]), u1 = static_cast<double>(s.v[i]);
+      set_sample(s, i, is_on_surface(Cone(*this, ref), ref) ? sample_on(ref, u0, u1) : sample_from(ref, u0, u1));
     }
   }
 
@@ -114,6 +112,8 @@ struct Sphere final : AnalyticShape {
 
   static constexpr double kPole = 1e-8, kHuge = 1e300;
   static constexpr double kRound = 1e-13, kNearlyRound = 1e-2;
+  /// Half a unit in the last place of a coordinate, and a little: by so much a point of the sphere is off.
+  static constexpr double kRounding = 6e-8;
 
   /// The smallest cone from a point around the sphere that surrounds the placed one.
   struct Cone {
@@ -172,7 +172,7 @@ struct Sphere final : AnalyticShape {
   };
 
   /// Cone::sample_sphere() for a batch, as one loop that vectorises: directions, distances and densities straight
-  /// from the cone, without the point. The density is 0 for reference points that are not outside.
+  /// from the cone, without the point. The density is 0 for reference points that are not clearly outside.
   void sample_cones(const Vec3d& center, double r, const ShapeSampleLanes& s) const {
     const double cx = center.x, cy = center.y, cz = center.z;
     const float side = flips_ ? -1.0f : 1.0f;
@@ -182,7 +182,10 @@ struct Sphere final : AnalyticShape {
       const double d = std::sqrt(wx * wx + wy * wy + wz * wz), inverse = 1 / d;
       wx *= inverse, wy *= inverse, wz *= inverse;
       const double sine = r * inverse, gap = (d - r) * (d + r);
-      const bool outside = gap > 0;
+      const double off =
+          kRounding * (std::abs(wx * static_cast<double>(s.ref.x[i])) + std::abs(wy * static_cast<double>(s.ref.y[i])) +
+                       std::abs(wz * static_cast<double>(s.ref.z[i])));
+      const bool outside = d - r > off;
       const double cos_max = std::sqrt(outside ? gap : 0.0) * inverse;
       const double x_max = sine * sine / (1 + cos_max);
       const double u0 = static_cast<double>(s.u[i]), x = u0 * x_max, cos_theta = 1 - x;
@@ -205,6 +208,23 @@ struct Sphere final : AnalyticShape {
     });
   }
 
+  /// Whether a point whose coordinates are floats is on the sphere as far as they tell: neither inside nor outside.
+  bool is_on_surface(const Cone& cone, const Vec3d& ref) const {
+    const double from_center = transform_point(scene_to_object_, ref).length() / r_;
+    const double off = std::abs(cone.w.x * ref.x) + std::abs(cone.w.y * ref.y) + std::abs(cone.w.z * ref.z);
+    return std::abs(from_center - 1) * cone.radius <= kRounding * off;
+  }
+
+  /// From a point of the sphere itself, whichever side of it rounding put it on: what it sees of the sphere is the far
+  /// side, by half of all directions.
+  ShapeSample sample_on(const Vec3d& ref, double u0, double u1) const {
+    const Vec3d o = transform_point(scene_to_object_, ref), on = o * (r_ / o.length());
+    const Vec3d d = transform_vector(scene_to_object_, any_direction(u0, u1));
+    const double t = -2 * on.dot(d) / d.length2();
+    if (!(t > 0)) return {ref, {0, 0, 1}, 0};
+    return on_sphere(on + t * d, 1 / (4 * kPiD));
+  }
+
   /// For a sphere under a transform that is a similarity but for rounding (matrices written with six digits): a
   /// direction of the surrounding cone, and the point it hits, if any. The density stays exactly that of the cone.
   ShapeSample sample_nearly_round(const Cone& cone, const Vec3d& ref, double u0, double u1) const {
@@ -216,12 +236,17 @@ struct Sphere final : AnalyticShape {
     return on_sphere(o + t0 * d, cone.pdf());
   }
 
+  /// Of all directions, evenly.
+  static Vec3d any_direction(double u0, double u1) {
+    const double z = 1 - 2 * u0, across = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * kPiD * u1;
+    return {across * std::cos(phi), across * std::sin(phi), z};
+  }
+
   /// From inside: every direction meets the sphere, so all are equally likely. By area, a point just below the surface
   /// would get half of its light from the few samples next to it.
   ShapeSample sample_inside(const Vec3d& ref, double u0, double u1) const {
-    const double z = 1 - 2 * u0, across = std::sqrt(std::max(0.0, 1 - z * z)), phi = 2 * kPiD * u1;
     const Vec3d o = transform_point(scene_to_object_, ref);
-    const Vec3d d = transform_vector(scene_to_object_, {across * std::cos(phi), across * std::sin(phi), z});
+    const Vec3d d = transform_vector(scene_to_object_, any_direction(u0, u1));
     double t0, t1;
     AxialQuadric{1, 1, 0, -r_ * r_}.roots(o.x, o.y, o.z, d.x, d.y, d.z, t0, t1);
     // Not quite a sphere: there may be room for the point between it and the sphere around it.

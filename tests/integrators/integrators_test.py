@@ -52,7 +52,7 @@ class Pictures(unittest.TestCase):
 
     def has_mean(self, pixels, value, least=1e-5):
         off = abs(float(pixels[..., 0].mean()) - value)
-        self.assertLess(off, 5 * self.noise(pixels) + least * value, "mean %g, not %g" % (pixels[..., 0].mean(), value))
+        self.assertLess(off, 5 * self.noise(pixels) + least * max(value, 1), "mean %g, not %g" % (pixels[..., 0].mean(), value))
 
     def have_one_mean(self, a, b):
         """Of two pictures of the same view, whose pixels differ in expectation: pixel by pixel."""
@@ -82,6 +82,31 @@ class Furnaces(Pictures):
                 with self.subTest(shape=shape, depth=depth):
                     pixels = self.room(shape, 0.5, path(depth, '"float rrthreshold" [0]'))
                     self.has_mean(pixels, sum(0.5**k for k in range(depth + 1)))
+
+    LAMP = 'AreaLightSource "diffuse" "rgb L" [1 1 1] %s %s Shape "sphere" "float radius" [1]'
+    INSIDE = "0.1 0.1 0.05  1 0.3 0.4  0 0 1"
+
+    def test_a_lamp_and_its_own_surface(self):
+        # A sphere's points are inside or outside of it by rounding, and must see its far inner side either way. From inside
+        # a reversed one shows 1 + 0.5. From outside a lamp of two fronts shows no more than it emits, and light that passes
+        # its surface comes from its inner side, which is dark where it has one front; a reversed one is black.
+        matte, sheet = 'Material "matte" "rgb Kd" [0.5 0.5 0.5]', 'Material "translucent" "rgb Kd" [1 1 1] "rgb Ks" [0 0 0] ' \
+            '"rgb transmit" [0.5 0.5 0.5] "rgb reflect" [0 0 0]'
+        places = ("", "Rotate 20 1 2 3", "Scale 1.001 1 1", "Translate 0 0 0.01 Rotate 33 1 0 2")
+        for integrator in ('"whitted"', '"directlighting"', '"directlighting" "string strategy" "one"', path(1)):
+            for place in places:
+                for name, material, more, eye, value in (
+                        ("inside", matte, "ReverseOrientation", self.INSIDE, 1.5),
+                        ("two fronts", matte, "", "0 0 4  0 0 0  0 1 0", 1),
+                        ("one front", sheet, "", "0 0 4  0 0 0  0 1 0", 1),
+                        ("reversed", matte, "ReverseOrientation", "0 0 4  0 0 0  0 1 0", 0)):
+                    with self.subTest(integrator=integrator, place=place, case=name):
+                        lamp = self.LAMP % (more, place)
+                        if name == "two fronts":
+                            lamp = lamp.replace('[1 1 1]', '[1 1 1] "bool twosided" "true"', 1)
+                        pixels = self.render(integrator, material + " " + lamp, eye=eye, spp=64, size=16,
+                                             fov=60 if name == "inside" else 8)
+                        self.has_mean(pixels, value, 1e-4)
 
     def test_endless_paths(self):
         # 1 / (1 - 0.8) = 5, less 0.8^101 = 1.6e-10. Roulette ends most of the paths early.
