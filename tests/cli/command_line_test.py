@@ -461,6 +461,12 @@ class Commands(Case):
         self.assertRegex(self.good("bench", "--only", "ingestion", "--runs", "1", "--text-mb", "2"),
                          r"(?s)\d MB/s .*\d MB/s .*\d Mtri/s ")
 
+    def test_bench_writes_its_scenes(self):
+        self.assertEqual(self.good("bench", "--only", "cornell,path", "--write", "scenes").splitlines(),
+                         ["scenes/cornell.pbrt", "scenes/path.pbrt"])
+        self.good("check", "scenes/cornell.pbrt", "scenes/path.pbrt")
+        self.fails(4, "cannot write", "bench", "--only", "path", "--write", "scenes/path.pbrt/no")
+
     def test_bench_of_a_scene(self):
         self.fails(2, "nosuch not in", "bench", "--only", "nosuch")
         self.write("small.pbrt", SCENE)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 
 #include "tools/whit/bench_ingestion.h"
 #include "tools/whit/bench_measure.h"
@@ -35,10 +36,31 @@ class TemporaryFolder {
   std::string path_;
 };
 
+/// Writes the built-in scenes that are wanted as NAME.pbrt, for other programs to render.
+template <class Wanted>
+int write_scenes(const std::string& folder, const Wanted& wanted) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  for (const BenchScene& scene : bench_scenes()) {
+    if (!wanted(scene.name)) continue;
+    const std::string path = folder + "/" + scene.name + ".pbrt";
+    std::ofstream out(path);
+    if (out) out << scene.text(folder);
+    out.close();
+    if (!out) {
+      say(fmt::format("whit bench: cannot write {}", path));
+      return kFileError;
+    }
+    fmt::print("{}\n", path);
+  }
+  return kDone;
+}
+
 }  // namespace
 
 int bench_command(const Arguments& args) {
   std::vector<std::string> files, only;
+  std::string write_to;
   bool as_json = false;
   BenchSettings settings;
   IngestionSettings reading;
@@ -54,12 +76,14 @@ int bench_command(const Arguments& args) {
         {.choices = names, .delimiter = ','}},
        {"--text-mb", &reading.text_megabytes, "Megabytes of scene text to read", {.least = 1, .most = 1e5}},
        {"--runs", &settings.runs, "Counted runs of each measurement", {.least = 1, .most = 100}},
+       {"--write", &write_to, "Write the built-in scenes into this folder instead, as NAME.pbrt"},
        {"--json", &as_json, "Print the figures as JSON"}}};
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
   const auto wanted = [&](const std::string& name) {
     return only.empty() || std::find(only.begin(), only.end(), name) != only.end();
   };
+  if (!write_to.empty()) return write_scenes(write_to, wanted);
   Json::Array rows;
   Json::Object report;
   const auto add = [&](const std::string& name, const ParsedFile& file) {
