@@ -168,7 +168,7 @@ class BuildRelease(Temporary):
         self.assertEqual(code, 0)
         # 190 steps of 3 s on 2 cores are 285 s.
         self.assertIn("190 steps, which may take about 5 minutes on 2 cores\n", said)
-        self.assertIn("built in 0 s\n", said)
+        self.assertRegex(said, r"built in \d+ s\n")  # seconds, on a machine that is busy
 
     def test_silent_when_nothing_is_to_do(self):
         nothing = "echo 'ninja: no work to do.'"
