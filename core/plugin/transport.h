@@ -171,6 +171,20 @@ inline DirectSamples directions(const Points& points, const Vec3Lanes& wi, Arena
   return s;
 }
 
+/// What the lobes send on of sampled light, in place of what they would send of any. Where both have densities, as far as
+/// no sampled direction finds the light.
+inline RGBLanes arriving(const DirectSamples& light, const Scattered& scattered) {
+  const RGBLanes f = scattered.f;
+  const bool weighed = light.pdf && scattered.pdf;
+  for_lanes(light.n, [&](int i) {
+    const float weight = weighed ? power_heuristic(light.pdf[i], scattered.pdf[i]) : 1.0f;
+    f.r[i] *= light.radiance.r[i] * weight;
+    f.g[i] *= light.radiance.g[i] * weight;
+    f.b[i] *= light.radiance.b[i] * weight;
+  });
+  return f;
+}
+
 /// for (int light : lights(t, points)): the numbers of the lights that may reach one of the points.
 class LightRange {
  public:

@@ -138,8 +138,7 @@ class Resolver {
 
   /// The tile whose own samples a pixel's are; null where none is rendered.
   const AovTile* own_tile(Vec2i pixel) const {
-    const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileReach::kTile)); };
-    const Vec2i at(tile_of(pixel.x) - grid_.first.x, tile_of(pixel.y) - grid_.first.y);
+    const Vec2i at(TileReach::tile_of(pixel.x) - grid_.first.x, TileReach::tile_of(pixel.y) - grid_.first.y);
     if (at.x < 0 || at.y < 0 || at.x >= grid_.columns || at.y >= grid_.rows) return nullptr;
     return &tiles_[static_cast<size_t>(at.y * grid_.columns + at.x)];
   }

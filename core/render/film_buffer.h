@@ -45,6 +45,8 @@ class FilterTable {
 class TileReach {
  public:
   static constexpr int kTile = 16;
+  /// The column or row of tiles that a pixel's coordinate, perhaps negative, is in.
+  static int tile_of(int p) { return p >= 0 ? p / kTile : -((-p + kTile - 1) / kTile); }
 
   TileReach(Vec2i tile, const FilterTable& filter);
   size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
@@ -135,7 +137,7 @@ void TileReach::each_reached(float film_x, float film_y, const Body& body) {
 
 template <class Body>
 void TileGrid::each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const {
-  const auto tile_of = [](int p) { return static_cast<int>(std::floor(static_cast<float>(p) / TileReach::kTile)); };
+  const auto tile_of = TileReach::tile_of;
   const int x0 = std::max(tile_of(pixel.x - filter.x_reach()) - first.x, 0);
   const int x1 = std::min(tile_of(pixel.x + filter.x_reach()) - first.x, columns - 1);
   const int y0 = std::max(tile_of(pixel.y - filter.y_reach()) - first.y, 0);

@@ -81,20 +81,21 @@ SenderPair find_senders(const Points& points, const Onward& a, const Onward& b, 
   return found;
 }
 
-/// How rays left their samples' first surface.
+/// How a ray leaves a point: a sampled direction of a specular lobe is mirrored or refracted by its side.
+Via way_of(const Points& points, const Onward& onward, int i) {
+  if (onward.kind == Onward::Kind::Mirrored) return Via::Mirrored;
+  if (onward.kind == Onward::Kind::Refracted) return Via::Refracted;
+  if (onward.pdf[i] != std::numeric_limits<float>::infinity()) return Via::Sampled;
+  const Vec3f ng = points.at.ng[i];
+  return (dot(ng, points.at.wo[i]) > 0) != (dot(ng, onward.wi[i]) > 0) ? Via::Refracted : Via::Mirrored;
+}
+
+/// How the rays' samples left their first surface.
 void fill_via(const Points& points, const Onward& onward, const Senders& senders, const Rays& out) {
-  const ShadingBatch& at = points.at;
   for (int k = 0; k < senders.n; ++k) {
     const int i = senders.point[k];
-    Via via = static_cast<Via>(points.rays.via[i]);
-    if (points.rays.depth == 0) {
-      const bool sampled = onward.kind == Onward::Kind::Sampled;
-      const bool specular = !sampled || onward.pdf[i] == std::numeric_limits<float>::infinity();
-      const bool refracted = sampled ? (dot(at.ng[i], at.wo[i]) > 0) != (dot(at.ng[i], onward.wi[i]) > 0)
-                                     : onward.kind == Onward::Kind::Refracted;
-      via = !specular ? Via::Sampled : refracted ? Via::Refracted : Via::Mirrored;
-    }
-    out.via[senders.to[k]] = static_cast<int32_t>(via);
+    out.via[senders.to[k]] =
+        points.rays.depth == 0 ? static_cast<int32_t>(way_of(points, onward, i)) : points.rays.via[i];
   }
 }
 
@@ -138,21 +139,16 @@ void fill_rays(const Points& points, const Onward& onward, const Senders& sender
   });
 }
 
-/// Counts rays by what they are; of sampled ones a specular lobe's ray is a mirrored one on the side of wo.
+/// Counts rays by what they are.
 void count_sent(const Points& points, const Onward& onward, const Senders& senders, RenderStatistics& statistics) {
   if (onward.kind == Onward::Kind::Mirrored) statistics.reflection_rays += senders.n;
   if (onward.kind == Onward::Kind::Refracted) statistics.refraction_rays += senders.n;
   if (onward.kind != Onward::Kind::Sampled) return;
-  const ShadingBatch& at = points.at;
-  int mirrored = 0, refracted = 0;
   for (int k = 0; k < senders.n; ++k) {
-    const int i = senders.point[k];
-    if (onward.pdf[i] < std::numeric_limits<float>::infinity()) continue;
-    const bool back = dot(onward.wi[i], at.ng[i]) * dot(at.wo[i], at.ng[i]) > 0;
-    mirrored += back, refracted += !back;
+    const Via way = way_of(points, onward, senders.point[k]);
+    statistics.reflection_rays += way == Via::Mirrored, statistics.refraction_rays += way == Via::Refracted;
+    statistics.indirect_rays += way == Via::Sampled;
   }
-  statistics.reflection_rays += mirrored, statistics.refraction_rays += refracted;
-  statistics.indirect_rays += senders.n - mirrored - refracted;
 }
 
 }  // namespace

@@ -71,9 +71,7 @@ class FilmRender {
       samples_.min.x = std::max(samples_.min.x, bounds[0]), samples_.max.x = std::min(samples_.max.x, bounds[1]);
       samples_.min.y = std::max(samples_.min.y, bounds[2]), samples_.max.y = std::min(samples_.max.y, bounds[3]);
     }
-    const auto tile_of = [](int p) {
-      return p >= 0 ? p / TileSums::kTile : -((-p + TileSums::kTile - 1) / TileSums::kTile);
-    };
+    const auto tile_of = TileReach::tile_of;
     if (samples_.max.x <= samples_.min.x || samples_.max.y <= samples_.min.y) return;
     grid_.first = {tile_of(samples_.min.x), tile_of(samples_.min.y)};
     grid_.columns = tile_of(samples_.max.x - 1) - grid_.first.x + 1;

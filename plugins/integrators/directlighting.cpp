@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "core/base/fastmath.h"
 #include "core/plugin/integrator.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/transport.h"
@@ -56,13 +55,7 @@ struct DirectLighting final : Integrator {
     if (light.n == 0) return;
     const bool found_otherwise = light.pdf != nullptr;
     const Scattered s = t.scatter(points, light.wi, found_otherwise, LobeKinds::NonSpecular);
-    if (found_otherwise) {
-      for_lanes(light.n, [&](int i) {
-        const float weight = power_heuristic(light.pdf[i], s.pdf[i]);
-        s.f.set(i, s.f[i] * weight);
-      });
-    }
-    t.add(points, light, t.visible(points, light, times(light.n, s.f, light.radiance)));
+    t.add(points, light, t.visible(points, light, arriving(light, s)));
   }
 
   /// The light that a sampled direction meets, as far as no sample of a light finds it.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "core/base/fastmath.h"
 #include "core/plugin/integrator.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/transport.h"
@@ -49,18 +48,6 @@ struct Path final : Integrator {
     const Onward onward = t.sampled(points, kLobe, indirect ? LobeKinds::All : LobeKinds::Specular);
     if (rays.depth > 3) t.roulette(points, onward, kRoulette, rrthreshold);
     t.send(points, onward);
-  }
-
-  /// What the lobes send on of the sampled light, in place of what they would send of any.
-  static RGBLanes arriving(const DirectSamples& light, const Scattered& scattered) {
-    const RGBLanes f = scattered.f;
-    for_lanes(light.n, [&](int i) {
-      const float weight = scattered.pdf ? power_heuristic(light.pdf[i], scattered.pdf[i]) : 1.0f;
-      f.r[i] *= light.radiance.r[i] * weight;
-      f.g[i] *= light.radiance.g[i] * weight;
-      f.b[i] *= light.radiance.b[i] * weight;
-    });
-    return f;
   }
 };
 
