@@ -1,0 +1,66 @@
+// A picture that grows: passes add samples to those that are there.
+//
+// The film is cut into units that count their samples by themselves: tiles of 16 x 16 pixels; or, for renders that give
+// more samples where they are needed, the two colours of a chessboard of pixels in tiles of 8 x 8. A pixel is the mean
+// over the film of what the filter reaches, each unit's samples weighed by one over their number, so that units with
+// many pull no filter their way.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "core/render/render.h"
+
+namespace whit {
+
+/// Samples are added in rounds of so many for each pixel of a unit: passes that end at multiples of it give the same
+/// bits as one.
+inline constexpr uint32_t kRound = 16;
+
+class FilmRender {
+ public:
+  /// Keeps references to the scene, whose sampler must go on (Sampler::extends()) or be prepared for the samples that
+  /// each pass adds.
+  FilmRender(const Scene& scene, const RenderOptions& options);
+  ~FilmRender();
+  FilmRender(const FilmRender&) = delete;
+  FilmRender& operator=(const FilmRender&) = delete;
+
+  /// Adds samples until every unit has `samples` of them per pixel. False when RenderOptions::progress stopped it;
+  /// units may then have different numbers of samples, and the picture is still one.
+  bool extend(uint32_t samples);
+  /// The same, with a number for each unit; those that have as many stay as they are.
+  bool extend(std::span<const uint32_t> samples);
+  /// Extends several films of one size, tile by tile in turn, so that the machine's moods meet all alike. They must have
+  /// the same pixels and kind of units.
+  static bool extend_in_turn(std::span<FilmRender* const> films, std::span<const uint32_t> samples);
+
+  /// The picture by now, with AOVs and statistics. Passes may follow.
+  RenderResult result() const;
+  /// Processor seconds that the passes took so far, over all threads.
+  double cpu_seconds() const;
+
+  /// Linear RGB so far, without the rest of result(): for looks between passes.
+  Picture picture() const;
+  /// Variance of each pixel's channels (of the mean, not of a sample), three for each pixel of the picture's window, by
+  /// four blocks of samples: a bit too high where samples are better spread than random ones. Needs RenderOptions::blocks.
+  std::vector<float> variance() const;
+
+  /// What the film is cut into.
+  struct Unit {
+    Box2i pixels;          ///< Of its tile, whose samples are taken; the borders that a filter reaches included.
+    int colour = 0;        ///< Of the chessboard: pixels with (x + y) % 2 == colour; -1 for all.
+    uint32_t samples = 0;  ///< Per pixel, so far.
+    bool holds(int x, int y) const { return colour < 0 || ((x + y) & 1) == colour; }
+  };
+  std::vector<Unit> units() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace whit
