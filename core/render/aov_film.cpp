@@ -24,26 +24,27 @@ void note(std::vector<Coverage>& coverage, uint32_t id, double weight) {
 
 }  // namespace
 
-AovTile::AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter)
+AovTile::AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter, int size)
     : plan_(plan),
-      reach_(tile, filter),
-      x0_(tile.x * TileReach::kTile),
-      y0_(tile.y * TileReach::kTile),
+      reach_(tile, filter, size),
+      size_(size),
+      x0_(tile.x * size),
+      y0_(tile.y * size),
       stride_(plan.means + 2),
       sums_(stride_ * reach_.pixels()) {
-  constexpr size_t kOwn = TileReach::kTile * TileReach::kTile;
+  const auto own_pixels = static_cast<size_t>(size * size);
   coverage_.assign(plan.mattes.size(), std::vector<std::vector<Coverage>>(reach_.pixels()));
-  distance_.assign(kOwn, std::numeric_limits<float>::infinity());
-  nearest_.resize(kOwn * (plan.columns.size() - plan.means));
-  if (plan.statistics) statistics_.resize(kOwn);
+  distance_.assign(own_pixels, std::numeric_limits<float>::infinity());
+  nearest_.resize(own_pixels * (plan.columns.size() - plan.means));
+  if (plan.statistics) samples_.resize(own_pixels);
 }
 
-void AovTile::add(const SampleChunk& chunk, const uint8_t* usable) {
-  for (int i = 0; i < chunk.n; ++i) {
+void AovTile::add(const SampleChunk& chunk, const uint8_t* usable, int begin, int end) {
+  for (int i = begin; i < end; ++i) {
     if (!usable[i]) continue;
-    add_sums(chunk, i);
-    if (chunk.ray_weight[i] != 0) add_nearest(chunk, i);
-    if (plan_.statistics) add_statistics(chunk, i);
+    if (plan_.sums()) add_sums(chunk, i);
+    if (plan_.nearest() && chunk.ray_weight[i] != 0) add_nearest(chunk, i);
+    if (plan_.statistics) ++samples_[own(chunk.px[i], chunk.py[i])];
   }
 }
 
@@ -82,25 +83,14 @@ const float* AovTile::nearest(int x, int y) const {
   return std::isfinite(distance_[pixel]) ? &nearest_[(plan_.columns.size() - plan_.means) * pixel] : nullptr;
 }
 
-/// Welford, Note on a Method for Calculating Corrected Sums of Squares and Products, 1962.
-void AovTile::add_statistics(const SampleChunk& chunk, int i) {
-  PixelStatistics& s = statistics_[own(chunk.px[i], chunk.py[i])];
-  ++s.n;
-  for (int c = 0; c < 3; ++c) {
-    const double value = static_cast<double>(chunk.radiance[i][c]), off = value - s.mean[c];
-    s.mean[c] += off / static_cast<double>(s.n);
-    s.square[c] += off * (value - s.mean[c]);
-  }
-}
-
 namespace {
 
-/// All tiles as one picture.
+/// All units as one picture.
 class Resolver {
  public:
-  Resolver(const Scene& scene, const AovPlan& plan, const std::vector<AovTile>& tiles, const TileGrid& grid,
-           const FilterTable& filter, const Box2i& window)
-      : scene_(scene), plan_(plan), tiles_(tiles), grid_(grid), filter_(filter), window_(window) {}
+  Resolver(const Scene& scene, const AovPlan& plan, const std::vector<AovTile>& tiles, const FilmUnits& film,
+           const Box2i& window)
+      : scene_(scene), plan_(plan), tiles_(tiles), film_(film), window_(window) {}
 
   AovPicture run(const StatementPlace& place) {
     for (const AovLayer& layer : plan_.layers) {
@@ -136,18 +126,20 @@ class Resolver {
     return first;
   }
 
-  /// The tile whose own samples a pixel's are; null where none is rendered.
+  /// The unit whose own samples a pixel's are; null where none is rendered.
   const AovTile* own_tile(Vec2i pixel) const {
-    const Vec2i at(TileReach::tile_of(pixel.x) - grid_.first.x, TileReach::tile_of(pixel.y) - grid_.first.y);
-    if (at.x < 0 || at.y < 0 || at.x >= grid_.columns || at.y >= grid_.rows) return nullptr;
-    return &tiles_[static_cast<size_t>(at.y * grid_.columns + at.x)];
+    const int unit = film_.grid.own_unit(pixel);
+    return unit < 0 ? nullptr : &tiles_[static_cast<size_t>(unit)];
   }
 
   void resolve(const AovLayer& layer, size_t first, Vec2i pixel, size_t at) {
     std::vector<float> value(layer.channels.size(), layer.row->nothing);
     if (layer.row->pixel == AovPixel::Statistic) {
       const AovTile* const tile = own_tile(pixel);
-      layer.row->statistic(tile ? tile->statistics(pixel.x, pixel.y) : PixelStatistics{}, film_scale(), value.data());
+      PixelStatistics of;
+      if (tile) of.n = tile->samples(pixel.x, pixel.y);
+      if (plan_.blocks) of.variance = block_variance(film_, pixel) * (double{film_scale()} * double{film_scale()});
+      layer.row->statistic(of, value.data());
     } else if (layer.row->pixel == AovPixel::Nearest) {
       const AovTile* const tile = own_tile(pixel);
       const float* const nearest = tile ? tile->nearest(pixel.x, pixel.y) : nullptr;
@@ -165,11 +157,12 @@ class Resolver {
     const size_t n = value.size(), means = plan_.means;
     std::vector<double> sum(n, 0.0);
     double all = 0, met = 0;
-    grid_.each_around(pixel, filter_, [&](size_t tile) {
-      const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
+    film_.each_around(pixel, [&](size_t unit) {
+      const double* const s = tiles_[unit].sums(pixel.x, pixel.y);
       if (!s) return;
-      for (size_t c = 0; c < n; ++c) sum[c] += s[static_cast<size_t>(layer.column) + c];
-      all += s[means], met += s[means + 1];
+      const double w = film_.weight(unit);
+      for (size_t c = 0; c < n; ++c) sum[c] += w * s[static_cast<size_t>(layer.column) + c];
+      all += w * s[means], met += w * s[means + 1];
     });
     double weight = layer.row->pixel == AovPixel::Mean ? all : met;
     if (layer.row->pixel == AovPixel::SurfaceDirection)
@@ -182,11 +175,12 @@ class Resolver {
   std::vector<Coverage> ranks(size_t matte, const std::vector<uint32_t>& hash_of, Vec2i pixel) const {
     std::vector<Coverage> found;
     double all = 0;
-    grid_.each_around(pixel, filter_, [&](size_t tile) {
-      const double* const s = tiles_[tile].sums(pixel.x, pixel.y);
+    film_.each_around(pixel, [&](size_t unit) {
+      const double* const s = tiles_[unit].sums(pixel.x, pixel.y);
       if (!s) return;
-      all += s[plan_.means];
-      for (const Coverage& c : tiles_[tile].coverage(matte, pixel.x, pixel.y)) note(found, hash_of[c.id], c.weight);
+      const double w = film_.weight(unit);
+      all += w * s[plan_.means];
+      for (const Coverage& c : tiles_[unit].coverage(matte, pixel.x, pixel.y)) note(found, hash_of[c.id], w * c.weight);
     });
     for (Coverage& c : found) c.weight = all != 0 ? c.weight / all : 0;
     // Weights of some filters are negative, and so may be a sum of few.
@@ -233,9 +227,9 @@ class Resolver {
     std::set<uint32_t> seen;
     for (int y = window_.min.y; y < window_.max.y; ++y) {
       for (int x = window_.min.x; x < window_.max.x; ++x) {
-        grid_.each_around({x, y}, filter_, [&](size_t tile) {
-          if (!tiles_[tile].sums(x, y)) return;
-          for (const Coverage& c : tiles_[tile].coverage(matte, x, y)) seen.insert(c.id);
+        film_.each_around({x, y}, [&](size_t unit) {
+          if (!tiles_[unit].sums(x, y)) return;
+          for (const Coverage& c : tiles_[unit].coverage(matte, x, y)) seen.insert(c.id);
         });
       }
     }
@@ -253,8 +247,7 @@ class Resolver {
   const Scene& scene_;
   const AovPlan& plan_;
   const std::vector<AovTile>& tiles_;
-  const TileGrid& grid_;
-  const FilterTable& filter_;
+  const FilmUnits& film_;
   const Box2i window_;
   AovPicture out_;
 };
@@ -262,9 +255,8 @@ class Resolver {
 }  // namespace
 
 AovPicture resolve_aovs(const Scene& scene, const AovPlan& plan, const StatementPlace& place,
-                        const std::vector<AovTile>& tiles, const TileGrid& grid, const FilterTable& filter,
-                        const Box2i& window) {
-  return Resolver(scene, plan, tiles, grid, filter, window).run(place);
+                        const std::vector<AovTile>& tiles, const FilmUnits& film, const Box2i& window) {
+  return Resolver(scene, plan, tiles, film, window).run(place);
 }
 
 }  // namespace whit

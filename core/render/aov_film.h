@@ -18,12 +18,12 @@ struct Coverage {
   double weight;
 };
 
-/// What the samples of one tile give to AOVs.
+/// What the samples of one unit give to AOVs.
 class AovTile {
  public:
-  AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter);
-  /// Adds a chunk's samples in their order, those that are usable. Its radiance is weighed.
-  void add(const SampleChunk& chunk, const uint8_t* usable);
+  AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter, int size = TileReach::kTile);
+  /// Adds the samples [begin, end) of a chunk in their order, those that are usable. Its radiance is weighed.
+  void add(const SampleChunk& chunk, const uint8_t* usable, int begin, int end);
 
   /// Sums of the first AovPlan::means columns at a pixel, then of the weights of all samples and of those that met
   /// something; null outside of the tile's reach.
@@ -36,22 +36,22 @@ class AovTile {
   }
   /// The sample nearest to the middle of a pixel of the tile, by column from AovPlan::means on; null without a sample.
   const float* nearest(int x, int y) const;
-  const PixelStatistics& statistics(int x, int y) const { return statistics_[own(x, y)]; }
+  /// How many of the pixel's own samples were usable, if somebody asks.
+  int64_t samples(int x, int y) const { return samples_[own(x, y)]; }
 
  private:
-  size_t own(int x, int y) const { return static_cast<size_t>((y - y0_) * TileReach::kTile + x - x0_); }
+  size_t own(int x, int y) const { return static_cast<size_t>((y - y0_) * size_ + x - x0_); }
   void add_sums(const SampleChunk& chunk, int sample);
   void add_nearest(const SampleChunk& chunk, int sample);
-  void add_statistics(const SampleChunk& chunk, int sample);
 
   const AovPlan& plan_;
   TileReach reach_;
-  int x0_, y0_;
+  int size_, x0_, y0_;
   size_t stride_;
   std::vector<double> sums_;
   std::vector<std::vector<std::vector<Coverage>>> coverage_;  ///< By matte and pixel.
   std::vector<float> distance_, nearest_;                     ///< Squared from the middle, and the values.
-  std::vector<PixelStatistics> statistics_;
+  std::vector<int64_t> samples_;
 };
 
 /// Layers of a picture and what its header says of them.
@@ -66,9 +66,8 @@ struct AovPicture {
   std::vector<OutputMatrix> matrices;
 };
 
-/// Merges the tiles.
+/// Merges the units.
 AovPicture resolve_aovs(const Scene& scene, const AovPlan& plan, const StatementPlace& place,
-                        const std::vector<AovTile>& tiles, const TileGrid& grid, const FilterTable& filter,
-                        const Box2i& window);
+                        const std::vector<AovTile>& tiles, const FilmUnits& film, const Box2i& window);
 
 }  // namespace whit

@@ -71,6 +71,7 @@ AovPlan::AovPlan(const Scene& scene, const AovRequest& request) {
     surfaces |= row.surface != nullptr;
     parts |= row.part.has_value();
     statistics |= row.pixel == AovPixel::Statistic;
+    blocks |= row.blocks;
     if (row.matte) mattes.push_back(layer.column);
     if (row.part) column_of_part[static_cast<size_t>(*row.part)] = layer.column;
     if (row.by_light_group) first_group = layer.column;

@@ -25,6 +25,9 @@ struct AovPlan {
   /// Without names nothing is planned.
   AovPlan(const Scene& scene, const AovRequest& request);
   bool any() const { return !layers.empty(); }
+  bool sums() const { return means > 0 || !mattes.empty(); }              ///< Something is added up over filters.
+  bool nearest() const { return columns.size() > means; }                 ///< Something is a single sample's.
+  bool watches() const { return surfaces || parts || first_group >= 0; }  ///< Values come from the way of the light.
 
   std::vector<AovLayer> layers;
   std::vector<const AovRow*> columns;  ///< The row of each array: those of means first,
@@ -33,6 +36,7 @@ struct AovPlan {
   bool surfaces = false;               ///< Some row asks for the first surfaces.
   bool parts = false;                  ///< Some row asks how light got to the camera.
   bool statistics = false;
+  bool blocks = false;  ///< Some row asks for blocks of samples.
 
   /// Arrays of each part of the light; -1 where nobody asks.
   int column_of_part[5] = {-1, -1, -1, -1, -1};

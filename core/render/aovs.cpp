@@ -191,16 +191,11 @@ std::vector<IdName> shape_names(const Scene& scene, const StatementPlace& place)
 
 // ---- Of a pixel's samples together ----
 
-/// Unbiased: sum (x - mean)^2 / (n - 1) is the samples' variance, and an n-th of it their mean's.
-void variance_of_mean(const PixelStatistics& of, float film_scale, float* to) {
-  const double n = static_cast<double>(of.n), scale = static_cast<double>(film_scale);
-  for (int c = 0; c < 3; ++c) {
-    to[c] = of.n < 2 ? std::numeric_limits<float>::infinity()
-                     : static_cast<float>(of.square[c] / (n - 1) / n * scale * scale);
-  }
+void variance_of_mean(const PixelStatistics& of, float* to) {
+  for (int c = 0; c < 3; ++c) to[c] = static_cast<float>(of.variance[c]);
 }
 
-void sample_count(const PixelStatistics& of, float, float* to) { *to = static_cast<float>(of.n); }
+void sample_count(const PixelStatistics& of, float* to) { *to = static_cast<float>(of.n); }
 
 // ---- The table ----
 
@@ -280,8 +275,11 @@ const std::vector<AovRow>& table() {
        .channels = rgb("variance"),
        .pixel = Statistic,
        .full_float = true,
-       .doc = "Variance of the mean of the pixel's own samples, unbiased; infinite with fewer than two.",
-       .statistic = variance_of_mean},
+       .doc = "Variance of the pixel's value, by four blocks of its samples: unbiased for the random sampler, a little "
+              "too "
+              "high for those that spread samples evenly; infinite with fewer than two samples.",
+       .statistic = variance_of_mean,
+       .blocks = true},
       {.name = "samples",
        .channels = {"samples"},
        .pixel = Statistic,
@@ -301,7 +299,7 @@ const char* pixel_text(AovPixel pixel) {
     case AovPixel::SurfaceDirection:
       return "mean of the samples that meet a surface, weighed by the filter, as a unit vector";
     case AovPixel::Nearest: return "the pixel's own sample nearest to its middle";
-    case AovPixel::Statistic: return "all of the pixel's own samples";
+    case AovPixel::Statistic: return "all of the pixel's samples";
   }
   return "";
 }

@@ -24,11 +24,10 @@ using SampleValues = float* const*;
 /// How the light that a sample brings got there, by what its first surface did. All together are the picture.
 enum class LightPart : uint8_t { Emission, Direct, Reflection, Refraction, Indirect };
 
-/// What is known of a pixel's own samples: those between its borders, whatever the filter takes in.
+/// What is known of a pixel's samples together.
 struct PixelStatistics {
-  int64_t n = 0;                 ///< Of those that are numbers.
-  double mean[3] = {0, 0, 0};    ///< Of their colours,
-  double square[3] = {0, 0, 0};  ///< and the sums of the squares of what these differ from it by.
+  int64_t n = 0;        ///< Of its own, between its borders, those that are numbers.
+  Vec3d variance{0.0};  ///< Of the pixel's channels, by blocks of the samples that its filter takes in.
 };
 
 /// What a number of Scene's stands for.
@@ -45,7 +44,7 @@ enum class AovPixel : uint8_t {
   SurfaceMean,       ///< Of the samples that meet a surface, weighed likewise.
   SurfaceDirection,  ///< The same, as a unit vector.
   Nearest,           ///< Of the pixel's own sample that is nearest to its middle, for what has no mean.
-  Statistic,         ///< Of the pixel's own samples together.
+  Statistic,         ///< Of the pixel's samples together.
 };
 
 /// The same in words.
@@ -64,7 +63,8 @@ struct AovRow {
   float nothing = 0;  ///< Of a sample that meets no surface.
   std::optional<LightPart> part{};
   bool by_light_group = false;
-  void (*statistic)(const PixelStatistics& of, float film_scale, float* to) = nullptr;
+  void (*statistic)(const PixelStatistics& of, float* to) = nullptr;
+  bool blocks = false;  ///< The statistic needs blocks of samples.
 
   /// Of numbers that stand for something: what for, and the name of the cryptomatte that goes with them.
   std::vector<IdName> (*names)(const Scene& scene, const StatementPlace& place) = nullptr;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace whit {
 
@@ -25,34 +26,47 @@ FilterTable::FilterTable(const Filter& filter)
   is_own_pixel_ = x_radius_ == 0.5f && y_radius_ == 0.5f && std::all_of(table_.begin(), table_.end(), is_first);
 }
 
-TileReach::TileReach(Vec2i tile, const FilterTable& filter)
+TileReach::TileReach(Vec2i tile, const FilterTable& filter, int size)
     : filter_(&filter),
-      x0_(tile.x * kTile - filter.x_reach()),
-      y0_(tile.y * kTile - filter.y_reach()),
-      width_(kTile + 2 * filter.x_reach()),
-      height_(kTile + 2 * filter.y_reach()),
+      x0_(tile.x * size - filter.x_reach()),
+      y0_(tile.y * size - filter.y_reach()),
+      width_(size + 2 * filter.x_reach()),
+      height_(size + 2 * filter.y_reach()),
       columns_(static_cast<size_t>(width_)) {}
 
-TileSums::TileSums(Vec2i tile, const FilterTable& filter) : reach_(tile, filter), sums_(4 * reach_.pixels()) {}
+int TileGrid::own_unit(Vec2i pixel) const {
+  const Vec2i at(tile_of(pixel.x) - first.x, tile_of(pixel.y) - first.y);
+  if (at.x < 0 || at.y < 0 || at.x >= columns || at.y >= rows) return -1;
+  return (at.y * columns + at.x) * colours + (colours == 1 ? 0 : (pixel.x + pixel.y) & 1);
+}
 
-void TileSums::add(float film_x, float film_y, const RGB& radiance) {
+TileSums::TileSums(Vec2i tile, const FilterTable& filter, int size, bool blocks)
+    : reach_(tile, filter, size), sums_(4 * reach_.pixels()), blocks_(blocks ? 4 * kBlocks * reach_.pixels() : 0) {}
+
+void TileSums::add(float film_x, float film_y, const RGB& radiance, int block) {
   const double value[4] = {radiance.x, radiance.y, radiance.z, 1};
+  float* const blocks = blocks_.empty() ? nullptr : &blocks_[4 * static_cast<size_t>(block)];
   reach_.each_reached(film_x, film_y, [&](int pixel, double weight) {
     double* const sums = &sums_[4 * static_cast<size_t>(pixel)];
     for (int c = 0; c < 4; ++c) sums[c] += weight * value[c];
+    if (!blocks) return;
+    float* const own = blocks + 4 * kBlocks * static_cast<size_t>(pixel);
+    for (int c = 0; c < 4; ++c) own[c] += static_cast<float>(weight * value[c]);
   });
 }
 
-void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable) {
-  for (int first = 0; first < n; first += kBlock) {
-    const int count = std::min(kBlock, n - first);
+void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable,
+                   const uint8_t* block) {
+  for (int first = 0; first < n; first += kBatch) {
+    const int count = std::min(kBatch, n - first);
     const float *x = film_x + first, *y = film_y + first;
+    const uint8_t* const b = block ? block + first : nullptr;
     if (reach_.filter().is_own_pixel()) {
-      add_to_own_pixels(count, x, y, radiance.from(first), usable + first);
+      add_to_own_pixels(count, x, y, radiance.from(first), usable + first, b);
       continue;
     }
     for (int i = 0; i < count; ++i) {
-      if (usable[first + i]) add(x[i], y[i], radiance[first + i]);
+      if (usable[first + i]) add(x[i], y[i], radiance[first + i], b ? b[i] : 0);
     }
   }
 }
@@ -60,13 +74,13 @@ void TileSums::add(int n, const float* film_x, const float* film_y, const RGBLan
 /// add() for the most common filter, a box of one pixel. Samples of a pixel follow each other: they are added up in
 /// registers, because sums in memory would wait for each other.
 void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
-                                 const uint8_t* usable) {
-  int cell[kBlock + 1];
+                                 const uint8_t* usable, const uint8_t* block) {
+  int cell[kBatch + 1];  // the pixel and the block in one number, so that a run is one of both
   const TileReach& reach = reach_;
   for_lanes(n, [&](int i) {
     const int x = static_cast<int>(std::floor(film_x[i])), y = static_cast<int>(std::floor(film_y[i]));
     const bool inside = reach.holds(x, y) & (usable[i] != 0);
-    cell[i] = inside ? reach.number(x, y) : -1;
+    cell[i] = inside ? reach.number(x, y) * kBlocks + (block ? block[i] : 0) : -1;
   });
   cell[n] = -2;
   const double w = reach_.filter().weight(0, 0);
@@ -76,26 +90,40 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
       ++i;
       continue;
     }
-    double* const sums = &sums_[4 * static_cast<size_t>(at)];
-    double r = sums[0], g = sums[1], b = sums[2], weight = sums[3];
+    double* const sums = &sums_[4 * static_cast<size_t>(at / kBlocks)];
+    double sum[4] = {sums[0], sums[1], sums[2], sums[3]};
     for (; cell[i] == at; ++i) {
-      r += w * radiance.r[i], g += w * radiance.g[i], b += w * radiance.b[i];
-      weight += w;
+      sum[0] += w * radiance.r[i], sum[1] += w * radiance.g[i], sum[2] += w * radiance.b[i];
+      sum[3] += w;
     }
-    sums[0] = r, sums[1] = g, sums[2] = b, sums[3] = weight;
+    if (!blocks_.empty()) {
+      float* const own = &blocks_[4 * static_cast<size_t>(at)];
+      for (int c = 0; c < 4; ++c) own[c] += static_cast<float>(sum[c] - sums[c]);
+    }
+    std::copy_n(sum, 4, sums);
   }
 }
 
-void resolve_film(const std::vector<TileSums>& tiles, const TileGrid& grid, const FilterTable& filter, float scale,
-                  Picture& picture) {
+void TileSums::halve_blocks() {
+  for (size_t p = 0; p < blocks_.size(); p += 4 * kBlocks) {
+    float* const b = &blocks_[p];
+    for (size_t c = 0; c < 4; ++c) {
+      b[c] += b[4 + c], b[4 + c] = b[8 + c] + b[12 + c];
+      b[8 + c] = b[12 + c] = 0;
+    }
+  }
+}
+
+void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
   picture.rgb.assign(3 * static_cast<size_t>(picture.width()) * static_cast<size_t>(picture.height()), 0.0f);
   tbb::parallel_for(0, picture.height(), [&](int row) {
     for (int column = 0; column < picture.width(); ++column) {
       const Vec2i pixel = picture.window.min + Vec2i(column, row);
       double sum[4] = {0, 0, 0, 0};
-      grid.each_around(pixel, filter, [&](size_t tile) {
-        const double* s = tiles[tile].at(pixel.x, pixel.y);
-        for (int c = 0; s && c < 4; ++c) sum[c] += s[c];
+      film.each_around(pixel, [&](size_t unit) {
+        const double* s = film.sums[unit].at(pixel.x, pixel.y);
+        const double weight = film.weight(unit);
+        for (int c = 0; s && c < 4; ++c) sum[c] += weight * s[c];
       });
       float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) +
                                      static_cast<size_t>(column))];
@@ -103,6 +131,31 @@ void resolve_film(const std::vector<TileSums>& tiles, const TileGrid& grid, cons
         out[c] = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
     }
   });
+}
+
+Vec3d block_variance(const FilmUnits& film, Vec2i pixel) {
+  constexpr int kBlocks = TileSums::kBlocks;
+  double sum[kBlocks][4] = {};
+  film.each_around(pixel, [&](size_t unit) {
+    const float* const s = film.sums[unit].blocks_at(pixel.x, pixel.y);
+    const double weight = film.weight(unit);
+    for (int k = 0; s && k < 4 * kBlocks; ++k) sum[k / 4][k % 4] += weight * static_cast<double>(s[k]);
+  });
+  double all[4] = {0, 0, 0, 0};
+  int blocks = 0;
+  for (const auto& s : sum) {
+    for (int c = 0; c < 4; ++c) all[c] += s[c];
+    blocks += s[3] != 0;
+  }
+  if (blocks < 2) return Vec3d(std::numeric_limits<double>::infinity());
+  Vec3d variance(0.0);
+  for (const auto& s : sum) {
+    for (int c = 0; s[3] != 0 && c < 3; ++c) {
+      const double off = s[c] / s[3] - all[c] / all[3];
+      variance[c] += s[3] / all[3] * off * off / (blocks - 1);
+    }
+  }
+  return variance;
 }
 
 }  // namespace whit

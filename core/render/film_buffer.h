@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/vec.h"
@@ -44,11 +45,9 @@ class FilterTable {
 /// a grid that is fixed to the full picture, so that a crop adds the same samples in the same order.
 class TileReach {
  public:
-  static constexpr int kTile = 16;
-  /// The column or row of tiles that a pixel's coordinate, perhaps negative, is in.
-  static int tile_of(int p) { return p >= 0 ? p / kTile : -((-p + kTile - 1) / kTile); }
+  static constexpr int kTile = 16;  ///< Pixels on each side of a tile, but where something else is said.
 
-  TileReach(Vec2i tile, const FilterTable& filter);
+  TileReach(Vec2i tile, const FilterTable& filter, int size = kTile);
   size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
   bool holds(int x, int y) const { return (x >= x0_) & (y >= y0_) & (x < x0_ + width_) & (y < y0_ + height_); }
   /// The number of a pixel that it holds.
@@ -65,39 +64,56 @@ class TileReach {
   std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
 };
 
-/// The tiles of a picture, row by row.
+/// The tiles of a picture, row by row, each of one unit or of two: those of its pixels whose x + y is even, and the odd.
 struct TileGrid {
   Vec2i first{0, 0};  ///< The first one's place on the fixed grid.
   int columns = 0, rows = 0;
-  /// Calls body(number of the tile) for the tiles whose samples may reach a pixel: row by row, left to right, so that the
+  int size = TileReach::kTile;  ///< Pixels on each side of a tile.
+  int colours = 1;              ///< Units of a tile.
+
+  size_t units() const { return static_cast<size_t>(columns) * static_cast<size_t>(rows * colours); }
+  /// The column or row of tiles that a pixel's coordinate, perhaps negative, is in.
+  int tile_of(int p) const { return p >= 0 ? p / size : -((-p + size - 1) / size); }
+  /// The unit that a pixel's own samples are in; -1 outside.
+  int own_unit(Vec2i pixel) const;
+  /// Calls body(number of the unit) for the units whose samples may reach a pixel: row by row, left to right, so that the
   /// order of additions depends on the pixel alone.
   template <class Body>
   void each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const;
 };
 
-/// Sums of the samples of one tile.
+/// Sums of the samples of one unit; and of four blocks of them, if wanted, from which the error can be told.
 class TileSums {
  public:
   static constexpr int kTile = TileReach::kTile;
+  static constexpr int kBlocks = 4;
 
-  TileSums(Vec2i tile, const FilterTable& filter);
+  TileSums(Vec2i tile, const FilterTable& filter, int size = kTile, bool blocks = false);
   /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
-  void add(float film_x, float film_y, const RGB& radiance);
-  /// Adds n samples in their order, those that are `usable`.
-  void add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable);
+  void add(float film_x, float film_y, const RGB& radiance, int block = 0);
+  /// Adds n samples in their order, those that are `usable`. `block` says which each belongs to; null without blocks.
+  void add(int n, const float* film_x, const float* film_y, const RGBLanes& radiance, const uint8_t* usable,
+           const uint8_t* block = nullptr);
+  /// Makes room for as many samples again: four blocks become the first two.
+  void halve_blocks();
 
   /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
   const double* at(int x, int y) const {
     return reach_.holds(x, y) ? &sums_[4 * static_cast<size_t>(reach_.number(x, y))] : nullptr;
   }
+  /// The same of each block, one after another: kBlocks times four floats.
+  const float* blocks_at(int x, int y) const {
+    return reach_.holds(x, y) ? &blocks_[4 * kBlocks * static_cast<size_t>(reach_.number(x, y))] : nullptr;
+  }
 
  private:
-  static constexpr int kBlock = 256;  ///< So many samples are looked at together.
+  static constexpr int kBatch = 256;  ///< So many samples are looked at together.
   void add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
-                         const uint8_t* usable);
+                         const uint8_t* usable, const uint8_t* block);
 
   TileReach reach_;
-  std::vector<double> sums_;  ///< Double: a million floats of one size are added with an error of 1 %.
+  std::vector<double> sums_;   ///< Double: a million floats of one size are added with an error of 1 %.
+  std::vector<float> blocks_;  ///< Differences between blocks need no more, and there are four.
 };
 
 /// The finished picture: linear RGB of the cropped window, row by row.
@@ -109,9 +125,27 @@ struct Picture {
   int height() const { return window.max.y - window.min.y; }
 };
 
+/// The units of a film, and how much the samples of each count: one over their number, so that a unit with many pulls
+/// no pixel's filter to its side.
+struct FilmUnits {
+  const TileGrid& grid;
+  const FilterTable& filter;
+  std::span<const TileSums> sums;
+  std::span<const double> weights;  ///< By unit; empty where all have the same number.
+
+  double weight(size_t unit) const { return weights.empty() ? 1.0 : weights[unit]; }
+  template <class Body>
+  void each_around(Vec2i pixel, const Body& body) const {
+    grid.each_around(pixel, filter, body);
+  }
+};
+
 /// Divides sums by weights; negative results become 0; scaled by the film's scale.
-void resolve_film(const std::vector<TileSums>& tiles, const TileGrid& grid, const FilterTable& filter, float scale,
-                  Picture& picture);
+void resolve_film(const FilmUnits& film, float scale, Picture& picture);
+
+/// The variance of a pixel's channels, before scaling: that of the mean of blocks of samples which are independent of each
+/// other, sum (w_b / w) (x_b - x)^2 / (blocks - 1). Infinite with fewer than two blocks.
+Vec3d block_variance(const FilmUnits& film, Vec2i pixel);
 
 template <class Body>
 void TileReach::each_reached(float film_x, float film_y, const Body& body) {
@@ -137,13 +171,13 @@ void TileReach::each_reached(float film_x, float film_y, const Body& body) {
 
 template <class Body>
 void TileGrid::each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const {
-  const auto tile_of = TileReach::tile_of;
   const int x0 = std::max(tile_of(pixel.x - filter.x_reach()) - first.x, 0);
   const int x1 = std::min(tile_of(pixel.x + filter.x_reach()) - first.x, columns - 1);
   const int y0 = std::max(tile_of(pixel.y - filter.y_reach()) - first.y, 0);
   const int y1 = std::min(tile_of(pixel.y + filter.y_reach()) - first.y, rows - 1);
   for (int y = y0; y <= y1; ++y) {
-    for (int x = x0; x <= x1; ++x) body(static_cast<size_t>(y) * static_cast<size_t>(columns) + static_cast<size_t>(x));
+    for (int unit = (y * columns + x0) * colours; unit < (y * columns + x1 + 1) * colours; ++unit)
+      body(static_cast<size_t>(unit));
   }
 }
 

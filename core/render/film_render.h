@@ -6,9 +6,7 @@
 // many pull no filter their way.
 #pragma once
 
-#include <atomic>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -16,9 +14,9 @@
 
 namespace whit {
 
-/// Samples are added in rounds of so many for each pixel of a unit: passes that end at multiples of it give the same
-/// bits as one.
-inline constexpr uint32_t kRound = 16;
+/// Where filters reach beyond their pixel, samples are added in rounds of so many for each pixel of a unit: passes that
+/// end at multiples of it give the same bits as one. Without such a filter all passes do.
+inline constexpr uint32_t kRound = 64;
 
 class FilmRender {
  public:
@@ -59,6 +57,8 @@ class FilmRender {
   std::vector<Unit> units() const;
 
  private:
+  static bool extend_tasks(std::span<FilmRender* const> films);
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

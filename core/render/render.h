@@ -16,6 +16,8 @@ struct RenderOptions {
   bool crop_given = false;        ///< crop overrides the film's.
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
   AovRequest aovs;                ///< What the picture holds beside its colours.
+  bool blocks = false;            ///< Keep sums of four blocks of samples, from which the error can be told.
+  bool adaptive = false;          ///< Smaller units, which may have different numbers of samples (film_render.h).
   bool time_stages = false;       ///< Fills the statistics' seconds by stage.
   /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
   std::function<bool(double)> progress;
@@ -28,7 +30,8 @@ struct RenderResult {
   Picture picture;
   AovPicture aovs;  ///< What RenderOptions::aovs asks for, of the same window.
   RenderStatistics statistics;
-  double seconds = 0;  ///< Of the render loop, wall clock.
+  double seconds = 0;      ///< Of the render loop, wall clock.
+  double cpu_seconds = 0;  ///< The same of the processors, added up over threads.
   int threads = 1;
   bool complete = true;  ///< False when progress() stopped it.
 };

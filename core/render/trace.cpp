@@ -202,7 +202,7 @@ void trace_chunk(Worker& worker, const Wrap& wrap) {
   const std::unique_ptr<Transport> wrapped = wrap ? wrap(tracer) : nullptr;
   Transport& watched = wrapped ? *wrapped : timed ? static_cast<Transport&>(*timed) : tracer;
   std::optional<AovTransport> aovs;
-  if (worker.aovs) aovs.emplace(watched, worker.scene, *worker.aovs, worker.chunk);
+  if (worker.aovs && worker.aovs->watches()) aovs.emplace(watched, worker.scene, *worker.aovs, worker.chunk);
   Transport& transport = aovs ? static_cast<Transport&>(*aovs) : watched;
   // A depth is done before the next begins, so that batches stay full, but for rays that multiply: a full batch of the
   // next depth goes first.

@@ -151,7 +151,8 @@ Picture constant_picture(const char* filter_name, double radius, const RGB& colo
       }
     }
   }
-  resolve_film(tiles, {{-1, -1}, 5, 4}, table, scale, picture);
+  const TileGrid grid{{-1, -1}, 5, 4};
+  resolve_film({grid, table, tiles, {}}, scale, picture);
   return picture;
 }
 
@@ -181,7 +182,8 @@ TEST(ResolveFilm, APixelWithoutSamplesIsBlackAndNegativeResultsToo) {
   Picture picture;
   picture.resolution = {2, 1};
   picture.window = {{0, 0}, {2, 1}};
-  resolve_film(tiles, {{0, 0}, 1, 1}, table, 1, picture);
+  const TileGrid grid{{0, 0}, 1, 1};
+  resolve_film({grid, table, tiles, {}}, 1, picture);
   EXPECT_EQ(picture.rgb, (std::vector<float>{2, 2, 0, 0, 0, 0}));
 }
 
@@ -200,7 +202,8 @@ TEST(ResolveFilm, ASampleNearATilesEdgeReachesBothSides) {
   Picture picture;
   picture.resolution = {32, 16};
   picture.window = {{15, 8}, {17, 9}};
-  resolve_film(tiles, {{0, 0}, 2, 1}, table, 1, picture);
+  const TileGrid grid{{0, 0}, 2, 1};
+  resolve_film({grid, table, tiles, {}}, 1, picture);
   ASSERT_EQ(picture.rgb.size(), 6u);
   EXPECT_EQ(picture.rgb[0], 1);
   EXPECT_NEAR(picture.rgb[3], 0.4 / 1.3, 0.01);

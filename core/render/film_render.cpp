@@ -1,0 +1,403 @@
+#include "core/render/film_render.h"
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+#include <time.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "core/render/flush_denormals.h"
+#include "core/render/trace.h"
+#include "core/scene/alpha.h"
+
+namespace whit {
+namespace {
+
+/// Camera samples traced together.
+constexpr int kChunk = 2048;
+/// Pixels on each side of what one thread renders at a time.
+constexpr int kTask = 16;
+/// The round of a filter that keeps to its pixel. Longer rounds keep rays together: 4 % of the time on scenes/mesh.pbrt.
+constexpr uint32_t kLongRound = 1024;
+
+/// Processor seconds of this thread.
+double thread_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// The pixels whose samples can reach the cropped picture.
+Box2i sampled_pixels(const Scene& scene, const FilterTable& filter, const Box2i& window) {
+  const Vec2i reach(filter.x_reach(), filter.y_reach());
+  Box2i samples(window.min - reach, window.max + reach);
+  const auto& bounds = scene.integrator().pixel_bounds();
+  if (bounds.size() == 4) {
+    samples.min.x = std::max(samples.min.x, bounds[0]), samples.max.x = std::min(samples.max.x, bounds[1]);
+    samples.min.y = std::max(samples.min.y, bounds[2]), samples.max.y = std::min(samples.max.y, bounds[3]);
+  }
+  return samples;
+}
+
+/// The tiles of the fixed grid over some pixels; whole tasks, so that every one has as many units.
+TileGrid grid_over(const Box2i& pixels, bool adaptive) {
+  TileGrid grid;
+  if (adaptive) grid.size = kTask / 2, grid.colours = 2;
+  if (pixels.max.x <= pixels.min.x || pixels.max.y <= pixels.min.y) return grid;
+  const TileGrid tasks;
+  const int per_task = kTask / grid.size;
+  const Vec2i first(tasks.tile_of(pixels.min.x), tasks.tile_of(pixels.min.y));
+  grid.first = first * per_task;
+  grid.columns = (tasks.tile_of(pixels.max.x - 1) - first.x + 1) * per_task;
+  grid.rows = (tasks.tile_of(pixels.max.y - 1) - first.y + 1) * per_task;
+  return grid;
+}
+
+/// Samples on their way into a chunk, and which unit and block each belongs to.
+struct Chunk {
+  int n = 0;
+  int32_t px[kChunk], py[kChunk];
+  uint32_t index[kChunk];
+  uint8_t block[kChunk];
+  /// The units in order, each up to where its samples end.
+  std::vector<std::pair<size_t, int>> runs;
+};
+
+/// What a pass adds to a unit: the samples [have, want), and in which blocks.
+struct UnitPass {
+  uint32_t have = 0, want = 0;
+  bool doubled = false;  ///< As many again: they are the last two blocks.
+
+  uint8_t block(uint32_t sample) const {
+    const uint64_t at = sample - have, of = want - have;
+    return static_cast<uint8_t>(doubled ? 2 + 2 * at / of : TileSums::kBlocks * at / of);
+  }
+};
+
+}  // namespace
+
+struct FilmRender::Impl {
+  Impl(const Scene& of, const RenderOptions& asked)
+      : scene(of), options(asked), filter(of.filter()), aovs(of, options.aovs), workers([this] {
+          return Worker(scene, options.time_stages, aovs.any() ? &aovs : nullptr);
+        }) {
+    options.blocks |= aovs.blocks;
+    prepare();
+  }
+
+  void prepare() {
+    window.resolution = scene.camera().film.resolution;
+    double crop[4];
+    scene.film().crop_window(crop);
+    window.window = crop_pixels(window.resolution, options.crop_given ? options.crop : crop);
+    sampled = sampled_pixels(scene, filter, window.window);
+    grid = grid_over(sampled, options.adaptive);
+    sums.reserve(grid.units());
+    if (aovs.any()) aov_tiles.reserve(grid.units());
+    for (int y = 0; y < grid.rows; ++y) {
+      for (int x = 0; x < grid.columns * grid.colours; ++x) {
+        const Vec2i tile = grid.first + Vec2i(x / grid.colours, y);
+        sums.emplace_back(tile, filter, grid.size, options.blocks);
+        if (aovs.any()) aov_tiles.emplace_back(aovs, tile, filter, grid.size);
+      }
+    }
+    have.assign(grid.units(), 0);
+  }
+
+  // ---- Threads ----
+
+  int threads() const { return options.threads > 0 ? options.threads : tbb::this_task_arena::max_concurrency(); }
+
+  template <class Body>
+  void on_threads(const Body& body) const {
+    tbb::global_control control(tbb::global_control::max_allowed_parallelism,
+                                static_cast<size_t>(std::max(threads(), 1)));
+    tbb::task_arena arena(threads());
+    arena.execute(body);
+  }
+
+  size_t tasks() const {
+    const int per_task = kTask / grid.size;
+    return static_cast<size_t>(grid.columns / per_task) * static_cast<size_t>(grid.rows / per_task);
+  }
+
+  /// The units of a task, tile by tile.
+  template <class Body>
+  void each_unit(size_t task, const Body& body) const {
+    const int per_task = kTask / grid.size, columns = grid.columns / per_task;
+    const int x0 = static_cast<int>(task) % columns * per_task, y0 = static_cast<int>(task) / columns * per_task;
+    for (int y = y0; y < y0 + per_task; ++y) {
+      const int unit = (y * grid.columns + x0) * grid.colours;
+      for (int k = 0; k < per_task * grid.colours; ++k) body(static_cast<size_t>(unit + k));
+    }
+  }
+
+  /// A unit's pixels within what is sampled.
+  Box2i pixels_of(size_t unit) const {
+    const int tile = static_cast<int>(unit) / grid.colours;
+    const Vec2i min = (grid.first + Vec2i(tile % grid.columns, tile / grid.columns)) * grid.size;
+    const Vec2i max = min + Vec2i(grid.size, grid.size);
+    return {{std::max(min.x, sampled.min.x), std::max(min.y, sampled.min.y)},
+            {std::min(max.x, sampled.max.x), std::min(max.y, sampled.max.y)}};
+  }
+  int colour_of(size_t unit) const { return grid.colours == 1 ? -1 : static_cast<int>(unit) & 1; }
+
+  // ---- Passes ----
+
+  /// What is to be added to each unit. Units that have as many samples already get none.
+  void begin_pass(std::span<const uint32_t> want) {
+    pass.assign(grid.units(), {});
+    tasks_done = 0;
+    for (size_t u = 0; u < pass.size(); ++u) {
+      const uint32_t to = std::max(want.size() == 1 ? want[0] : want[u], have[u]);
+      pass[u] = {have[u], to, options.blocks && have[u] > 0 && to == 2 * have[u]};
+    }
+  }
+
+  void render_task(size_t task) {
+    if (stopped) return;
+    const double start = thread_seconds();
+    FlushDenormals flush;
+    Worker& worker = workers.local();
+    worker.start_clock();
+    take_alpha_tests();
+    uint32_t from = UINT32_MAX, to = 0;
+    each_unit(task, [&](size_t u) {
+      if (pass[u].have == pass[u].want) return;
+      if (pass[u].doubled) sums[u].halve_blocks();
+      from = std::min(from, pass[u].have), to = std::max(to, pass[u].want);
+    });
+    for (uint32_t at = from; at < to && !stopped;) {
+      const uint32_t end = std::min(to, at / round * round + round);
+      add_round(worker, task, at, end);
+      at = end;
+    }
+    worker.stop_clock();
+    worker.statistics.alpha_tests += take_alpha_tests();
+    worker_seconds += thread_seconds() - start;
+    if (options.tile_done) preview(task);
+    report_progress();
+  }
+
+  /// Adds the samples [from, to) of all of the task's units that want them.
+  void add_round(Worker& worker, size_t task, uint32_t from, uint32_t to) {
+    Chunk& chunk = chunks.local();
+    each_unit(task, [&](size_t u) {
+      const uint32_t first = std::max(from, have[u]), last = std::min(to, pass[u].want);
+      if (first >= last) return;
+      const Box2i pixels = pixels_of(u);
+      const int colour = colour_of(u);
+      for (int y = pixels.min.y; y < pixels.max.y; ++y) {
+        for (int x = pixels.min.x; x < pixels.max.x; ++x) {
+          if (colour >= 0 && ((x + y) & 1) != colour) continue;
+          for (uint32_t s = first; s < last; ++s) {
+            chunk.px[chunk.n] = x, chunk.py[chunk.n] = y, chunk.index[chunk.n] = s;
+            chunk.block[chunk.n] = pass[u].block(s);
+            if (++chunk.n == kChunk) close_run(chunk, u), render_chunk(worker, chunk);
+          }
+        }
+      }
+      close_run(chunk, u);
+      have[u] = last;
+    });
+    render_chunk(worker, chunk);
+  }
+
+  static void close_run(Chunk& chunk, size_t unit) {
+    const int begin = chunk.runs.empty() ? 0 : chunk.runs.back().second;
+    if (chunk.n > begin) chunk.runs.emplace_back(unit, chunk.n);
+  }
+
+  void render_chunk(Worker& worker, Chunk& samples) {
+    if (samples.n == 0) return;
+    ArenaScope scope(worker.arena);
+    generate_camera_rays(worker, samples.n, samples.px, samples.py, samples.index);
+    trace_chunk(worker);
+    const SampleChunk& c = worker.chunk;
+    const uint8_t* usable = weigh_samples(worker);
+    for (int i = 0; i < c.n; ++i) {
+      if (!usable[i]) worker.statistics.note_invalid({c.px[i], c.py[i]}, c.index[i]);
+    }
+    int begin = 0;
+    for (const auto& [unit, end] : samples.runs) {
+      sums[unit].add(end - begin, c.film_x + begin, c.film_y + begin, c.radiance.from(begin), usable + begin,
+                     options.blocks ? samples.block + begin : nullptr);
+      if (aovs.any()) aov_tiles[unit].add(c, usable, begin, end);
+      begin = end;
+    }
+    samples.n = 0;
+    samples.runs.clear();
+  }
+
+  /// Limits the samples' luminance and weighs them as the camera says. Returns which of them are numbers.
+  const uint8_t* weigh_samples(Worker& worker) const {
+    const SampleChunk& c = worker.chunk;
+    const float brightest = static_cast<float>(scene.film().max_sample_luminance());
+    uint8_t* usable = worker.arena.alloc<uint8_t>(c.n);
+    for_lanes(c.n, [&](int i) {
+      const RGB l = c.radiance[i];
+      const float y = luminance(l);
+      usable[i] = is_usable_sample(l);
+      const float limit = y > brightest ? brightest / y : 1.0f, weight = c.ray_weight[i];
+      c.radiance.set(i, {l.x * limit * weight, l.y * limit * weight, l.z * limit * weight});
+    });
+    return usable;
+  }
+
+  // ---- What is seen of it ----
+
+  void preview(size_t task) const {
+    Box2i box;
+    each_unit(task, [&](size_t u) { box.extendBy(pixels_of(u)); });
+    const Box2i& whole = window.window;
+    box.min = {std::max(box.min.x, whole.min.x), std::max(box.min.y, whole.min.y)};
+    box.max = {std::min(box.max.x, whole.max.x), std::min(box.max.y, whole.max.y)};
+    if (box.min.x >= box.max.x || box.min.y >= box.max.y) return;
+    std::vector<float> rgb;
+    for (int y = box.min.y; y < box.max.y; ++y) {
+      for (int x = box.min.x; x < box.max.x; ++x) {
+        const double* s = sums[static_cast<size_t>(grid.own_unit({x, y}))].at(x, y);
+        for (int c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? static_cast<float>(s[c] / s[3]) : 0.0f);
+      }
+    }
+    options.tile_done(box, rgb);
+  }
+
+  void report_progress() {
+    const size_t done = ++tasks_done;
+    if (!options.progress) return;
+    std::unique_lock lock(progress_mutex, std::try_to_lock);
+    if (lock && !options.progress(static_cast<double>(done) / static_cast<double>(tasks()))) stopped = true;
+  }
+
+  /// One over the units' numbers of samples; nothing where all have the same.
+  std::vector<double> weights() const {
+    if (std::all_of(have.begin(), have.end(), [&](uint32_t n) { return n == have.front(); })) return {};
+    std::vector<double> w(have.size());
+    for (size_t u = 0; u < w.size(); ++u) w[u] = have[u] > 0 ? 1.0 / have[u] : 0.0;
+    return w;
+  }
+
+  float film_scale() const { return static_cast<float>(scene.film().scale()); }
+
+  const Scene& scene;
+  RenderOptions options;
+  FilterTable filter;
+  const uint32_t round = filter.is_own_pixel() ? kLongRound : kRound;
+  const AovPlan aovs;
+  tbb::enumerable_thread_specific<Worker> workers;
+  tbb::enumerable_thread_specific<Chunk> chunks;
+  Picture window;  ///< Without colours.
+  Box2i sampled;
+  TileGrid grid;
+  std::vector<TileSums> sums;      ///< By unit.
+  std::vector<AovTile> aov_tiles;  ///< As many, or none.
+  std::vector<uint32_t> have;      ///< Samples per pixel of each unit.
+  std::vector<UnitPass> pass;
+  std::atomic<size_t> tasks_done{0};
+  std::atomic<bool> stopped{false};
+  std::mutex progress_mutex;
+  std::atomic<double> worker_seconds{0};
+  double seconds = 0;
+};
+
+FilmRender::FilmRender(const Scene& scene, const RenderOptions& options)
+    : impl_(std::make_unique<Impl>(scene, options)) {}
+FilmRender::~FilmRender() = default;
+
+bool FilmRender::extend(uint32_t samples) { return extend(std::span(&samples, 1)); }
+
+bool FilmRender::extend(std::span<const uint32_t> samples) {
+  impl_->begin_pass(samples);
+  FilmRender* const self = this;
+  return extend_tasks(std::span(&self, 1));
+}
+
+bool FilmRender::extend_in_turn(std::span<FilmRender* const> films, std::span<const uint32_t> samples) {
+  for (FilmRender* film : films) film->impl_->begin_pass(samples);
+  return extend_tasks(films);
+}
+
+bool FilmRender::extend_tasks(std::span<FilmRender* const> films) {
+  const auto start = std::chrono::steady_clock::now();
+  Impl& first = *films.front()->impl_;
+  first.on_threads([&] {
+    tbb::parallel_for(
+        tbb::blocked_range<size_t>(0, first.tasks(), 1),
+        [&](const auto& range) {
+          for (size_t t = range.begin(); t != range.end(); ++t) {
+            for (size_t k = 0; k < films.size(); ++k) films[(t + k) % films.size()]->impl_->render_task(t);
+          }
+        },
+        tbb::simple_partitioner());
+  });
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  bool complete = true;
+  for (FilmRender* film : films) {
+    film->impl_->seconds += seconds / static_cast<double>(films.size());
+    complete &= !film->impl_->stopped.exchange(false);
+  }
+  return complete;
+}
+
+Picture FilmRender::picture() const {
+  Picture picture = impl_->window;
+  const std::vector<double> weights = impl_->weights();
+  impl_->on_threads([&] {
+    resolve_film({impl_->grid, impl_->filter, impl_->sums, weights}, impl_->film_scale(), picture);
+  });
+  return picture;
+}
+
+std::vector<float> FilmRender::variance() const {
+  const Picture& of = impl_->window;
+  const auto width = static_cast<size_t>(of.width());
+  const double scale2 = static_cast<double>(impl_->film_scale()) * static_cast<double>(impl_->film_scale());
+  std::vector<float> out(3 * width * static_cast<size_t>(of.height()));
+  const std::vector<double> weights = impl_->weights();
+  const FilmUnits film{impl_->grid, impl_->filter, impl_->sums, weights};
+  impl_->on_threads([&] {
+    tbb::parallel_for(0, of.height(), [&](int row) {
+      for (size_t x = 0; x < width; ++x) {
+        const Vec3d v = block_variance(film, of.window.min + Vec2i(static_cast<int>(x), row)) * scale2;
+        for (int c = 0; c < 3; ++c)
+          out[3 * (static_cast<size_t>(row) * width + x) + static_cast<size_t>(c)] = static_cast<float>(v[c]);
+      }
+    });
+  });
+  return out;
+}
+
+RenderResult FilmRender::result() const {
+  const auto start = std::chrono::steady_clock::now();
+  const Impl& of = *impl_;
+  RenderResult result;
+  result.picture = picture();
+  if (of.aovs.any()) {
+    const std::vector<double> weights = of.weights();
+    of.on_threads([&] {
+      result.aovs = resolve_aovs(of.scene, of.aovs, of.options.aovs.place, of.aov_tiles,
+                                 {of.grid, of.filter, of.sums, weights}, result.picture.window);
+    });
+  }
+  for (const Worker& w : of.workers) result.statistics.add(w.statistics);
+  result.threads = of.threads();
+  result.cpu_seconds = cpu_seconds();
+  result.seconds = of.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return result;
+}
+
+double FilmRender::cpu_seconds() const { return impl_->worker_seconds; }
+
+std::vector<FilmRender::Unit> FilmRender::units() const {
+  std::vector<Unit> units;
+  for (size_t u = 0; u < impl_->have.size(); ++u)
+    units.push_back({impl_->pixels_of(u), impl_->colour_of(u), impl_->have[u]});
+  return units;
+}
+
+}  // namespace whit
