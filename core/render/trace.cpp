@@ -107,10 +107,10 @@ void place_rays_still(const Mat4d& camera, const Rays& rays) {
   });
 }
 
-/// pbrt shrinks footprints by 1/sqrt(samples per pixel): a sample stands for its share of the pixel.
-void scale_differentials(const Rays& rays, int samples_per_pixel) {
+/// A sample stands for its share of the pixel (Scene::footprint_samples).
+void scale_differentials(const Rays& rays, int footprint_samples) {
   const RayDifferentials& next = rays.differentials;
-  const float s = 1 / std::sqrt(static_cast<float>(samples_per_pixel));
+  const float s = 1 / std::sqrt(static_cast<float>(footprint_samples));
   for_lanes(rays.n, [&](int i) {
     const Vec3f o = rays.o[i], d = rays.d[i];
     next.rx_o.set(i, o + (next.rx_o[i] - o) * s);
@@ -155,7 +155,7 @@ void generate_camera_rays(Worker& worker, int n, const int32_t* px, const int32_
   } else {
     place_rays(scene, c.time, rays);
   }
-  if (rays.differentials) scale_differentials(rays, scene.samples_per_pixel);
+  if (rays.differentials) scale_differentials(rays, scene.footprint_samples);
   for_lanes(n, [&](int i) {
     rays.throughput.set(i, RGB(1.0f));
     rays.slot[i] = i;

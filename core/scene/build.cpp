@@ -36,6 +36,7 @@ void drop_unneeded(const EffectPlan& plan, BoundScene& bound) {
 void prepare_sampling(const BuildContext& context, const BuildOptions& options, Scene& scene) {
   Sampler& sampler = *scene.bound.sampler.plugin;
   sampler.seed = options.seed;
+  scene.footprint_samples = options.footprint_samples > 0 ? options.footprint_samples : sampler.samples_per_pixel();
   if (options.quick) {
     sampler.set_samples_per_pixel(1);
   } else if (options.samples_per_pixel > 0) {

@@ -93,6 +93,7 @@ struct SceneEnvironment {
 /// The numbers of the render that the command line may override.
 struct BuildOptions {
   int samples_per_pixel = 0;  ///< 0: the scene's.
+  int footprint_samples = 0;  ///< Scene::footprint_samples; 0: the scene's own number of samples.
   uint32_t seed = 0;
   bool quick = false;  ///< pbrt's --quick: a quarter of the resolution, one sample.
   bool robust_traversal = true;
@@ -128,6 +129,9 @@ struct Scene {
   bool any_touched = false;                    ///< Whether the end of some light is (RayEnd::touched).
   int light_dimensions = 0;                    ///< Sample dimensions that the lights of one bounce use.
   int samples_per_pixel = 1;
+  /// Camera rays' footprints are a pixel's, shrunk by the square root of this (in area by this). The number of samples
+  /// that the scene asks for, whatever is rendered: pictures of any number of samples converge to the same.
+  int footprint_samples = 1;
   int sort_keys = 0;           ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
   bool has_instances = false;  ///< Points are taken to render space.
   std::unique_ptr<LightChoice> light_choice;  ///< Null where the integrator samples every light.

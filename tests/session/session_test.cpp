@@ -128,5 +128,23 @@ TEST(Session, AWorldIsRenderedWithOtherSamplesAsIfItHadBeenBuiltWithThem) {
   }
 }
 
+TEST(Session, FootprintsAreOfTheNumberOfSamplesThatTheSceneAsksFor) {
+  const ParsedFile file =
+      read_scene_text("t", ball(std::string(kFilm) + "\nSampler \"maxmindist\" \"integer pixelsamples\" 9"));
+  const auto footprint = [&](BuildOptions options) {
+    BuiltWorld world = build_world(plan(file), options);
+    const int built = world.scene->footprint_samples;
+    EXPECT_TRUE(set_samples(world, 64, 1).all().empty());
+    EXPECT_EQ(world.scene->samples_per_pixel, 64);
+    EXPECT_EQ(world.scene->footprint_samples, built);
+    return built;
+  };
+  EXPECT_EQ(footprint({}), 16) << "as the sampler rounds it";
+  EXPECT_EQ(footprint({.samples_per_pixel = 1}), 16);
+  EXPECT_EQ(footprint({.quick = true}), 16);
+  EXPECT_EQ(footprint({.footprint_samples = 3}), 3);
+  EXPECT_EQ(footprint({.samples_per_pixel = 1, .footprint_samples = 3, .quick = true}), 3);
+}
+
 }  // namespace
 }  // namespace whit

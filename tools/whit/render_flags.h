@@ -17,7 +17,7 @@ struct RenderSettings {
   std::vector<int> pixel;
   std::string debug_pixel;
   EffectFlags effects;
-  int threads = 0, spp = 0;
+  int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;
   bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;

@@ -145,6 +145,7 @@ class RenderJob {
   BuildOptions build_options() const {
     BuildOptions o;
     o.samples_per_pixel = settings_.spp;
+    o.footprint_samples = settings_.footprint_spp;
     o.seed = settings_.seed;
     o.quick = settings_.quick;
     o.robust_traversal = settings_.traversal == "robust";
