@@ -20,19 +20,28 @@ inline uint32_t reverse_bits(uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x & 0xaaaaaaaau) >> 1);
 }
 
-/// The base 2 radical inverse of `index` under a nested uniform (Owen) scramble chosen by `key`, in [0, 1 - 2^-24].
-/// A bit of the scrambled number depends on the key and on the more significant bits alone, which multiplications by
-/// even numbers give on the reversed number, and that is the index itself. Sources: Laine and Karras, Stratified
-/// Sampling for Stochastic Transparency, 2011; Burley, Practical Hash-based Owen Scrambling, JCGT 9(4), 2020; the
-/// constants are Vegdahl's (Building a Better LK Hash, 2021).
-inline float owen_base2(uint32_t index, uint32_t key) {
-  uint32_t x = index;
+/// A bijection chosen by `key` in which a bit of the result depends on that bit and on less significant ones alone,
+/// which is what multiplications by even numbers give. Sources: Laine and Karras, Stratified Sampling for Stochastic
+/// Transparency, 2011; the constants are Vegdahl's (Building a Better LK Hash, 2021).
+inline uint32_t hash_upwards(uint32_t x, uint32_t key) {
   x ^= x * 0x3d20adeau;
   x += key;
   x *= (key >> 16) | 1u;
   x ^= x * 0x05526c56u;
   x ^= x * 0x53a22864u;
-  return unit_float(reverse_bits(x));
+  return x;
+}
+
+/// The base 2 radical inverse of `index` under a nested uniform (Owen) scramble chosen by `key`, in [0, 1 - 2^-24].
+/// A bit of the scrambled number depends on the key and on the more significant bits alone; on the reversed number these
+/// are the less significant ones, and the reversed number is the index itself. Source: Burley, Practical Hash-based Owen
+/// Scrambling, JCGT 9(4), 2020.
+inline float owen_base2(uint32_t index, uint32_t key) { return unit_float(reverse_bits(hash_upwards(index, key))); }
+
+/// The same as a permutation of sample numbers: every 2^m that follow each other from a multiple of 2^m on go to such
+/// numbers again.
+inline uint32_t shuffle_nested(uint32_t index, uint32_t key) {
+  return reverse_bits(hash_upwards(reverse_bits(index), key));
 }
 
 /// One step of the nested scramble in base 3: takes the lowest digit off `index`, appends its image under one of the

@@ -15,7 +15,8 @@ class ZeroTwoSequence final : public SobolSampler {
 
 const Register<ZeroTwoSequence> zero_two{
     std::vector<std::string>{"lowdiscrepancy"}, "02sequence",
-    "Scrambled (0,2)-sequences: every pixel and pair of dimensions evenly covered.", pixelsamples_param(),
+    "Scrambled (0,2)-sequences: every pixel and pair of dimensions evenly covered.",
+    pixelsamples_param("Samples per pixel."),
     param(&ZeroTwoSequence::dimensions, "dimensions", 4, Unit::None,
           "Accepted for pbrt's sake; every dimension is as good as the first.")};
 

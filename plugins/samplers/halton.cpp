@@ -5,12 +5,15 @@
 // pixel has. Sources: Halton 1960; Owen, Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences, 1995; Burley, Practical
 // Hash-based Owen Scrambling, JCGT 9(4), 2020.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/base/radical_inverse.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/sampler.h"
+#include "plugins/shared/sample_sets.h"
 
 namespace whit {
 namespace {
@@ -24,7 +27,11 @@ class Halton final : public Sampler {
   bool pixel_centre = false;
 
   int samples_per_pixel() const override { return pixel_samples; }
-  int set_samples_per_pixel(int n) override { return pixel_samples = std::clamp(n, 1, kMaxSamples); }
+  int set_samples_per_pixel(int n) override { return asked_ = n, pixel_samples = std::clamp(n, 1, kMaxSamples); }
+  std::string rounding() const override {
+    return asked_ > kMaxSamples ? fmt::format("halton takes {} at most; {} were asked for", kMaxSamples, asked_) : "";
+  }
+  bool extends() const override { return false; }
 
   void get_1d(const SampleKeys& keys, int dimension, float* u) const override {
     uint32_t key[kBlock], index[kBlock];
@@ -65,15 +72,17 @@ class Halton final : public Sampler {
   }
 
  private:
-  /// The numbers whose radical inverses in base 2 and 3 are the positions within the pixels.
+  /// The numbers whose radical inverses in base 2 and 3 are the positions within the pixels. Another set of samples has
+  /// those of pixels elsewhere.
   void film_indices(const SampleKeys& keys, int first, int n, uint32_t* x_index, uint32_t* y_index) const {
     const uint32_t shift_x = mix32(seed) & 127u, shift_y = mix32(seed) % 243u;
     const int32_t *px = keys.px + first, *py = keys.py + first;
-    const uint32_t* sample = keys.index + first;
-    for_lanes(n, [=](int i) {
+    uint32_t shift[kBlock] = {}, sample[kBlock];
+    split_sets(n, static_cast<uint32_t>(pixel_samples), keys.index + first, shift, sample);
+    for_lanes(n, [&](int i) {
       // Pixels left of and above the picture count too (a wide filter's border): no negative remainders.
-      const uint32_t x = (static_cast<uint32_t>(px[i]) + shift_x) & 127u;
-      const uint32_t y = (static_cast<uint32_t>(py[i] + 243 * 256) + shift_y) % 243u;
+      const uint32_t x = (static_cast<uint32_t>(px[i]) + shift_x + shift[i]) & 127u;
+      const uint32_t y = (static_cast<uint32_t>(py[i] + 243 * 256) + shift_y + (shift[i] >> 8)) % 243u;
       const uint32_t a = reverse_bits(x) >> 25, b = reverse_base3(y, 5);
       // The first sample that falls into this pixel of the block, by the Chinese remainder theorem:
       // 243 * 59 = 1 modulo 128, and 128 * 131 = 1 modulo 243.
@@ -101,19 +110,16 @@ class Halton final : public Sampler {
     });
   }
 
-  /// Keys and shuffled sample numbers of n lanes; `purpose` tells dimensions apart. A sample number out of range would
-  /// never come to rest in permute_lanes(), so it counts as the last.
+  /// Keys and shuffled sample numbers of n lanes; `purpose` tells dimensions apart.
   void begin(const SampleKeys& keys, int first, int n, uint32_t purpose, uint32_t* key, uint32_t* index) const {
     const uint32_t base = hash_combine(mix32(seed ^ 0x48616c74u), purpose);
     const int32_t *px = keys.px + first, *py = keys.py + first;
-    const uint32_t last = static_cast<uint32_t>(pixel_samples) - 1;
-    const uint32_t *sample = keys.index + first, *stream = keys.stream + first;
-    for_lanes(n, [=](int i) {
-      key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]);
-      index[i] = sample[i] < last ? sample[i] : last;
-    });
+    const auto count = static_cast<uint32_t>(pixel_samples);
+    const uint32_t* const stream = keys.stream + first;
+    for_lanes(n, [=](int i) { key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]); });
+    split_sets(n, count, keys.index + first, key, index);
     permute_lanes(
-        n, last + 1, [=](int i) { return key[i]; }, index);
+        n, count, [=](int i) { return key[i]; }, index);
   }
 
   /// The scrambled radical inverses in base 3: as many digits as the sample numbers have, and a random rest.
@@ -132,6 +138,8 @@ class Halton final : public Sampler {
       out[i] = u < kBelowOne ? u : kBelowOne;
     });
   }
+
+  int asked_ = 0;  ///< The number of samples that has been set, if any.
 };
 
 const Register<Halton> halton{

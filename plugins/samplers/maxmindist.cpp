@@ -1,6 +1,8 @@
 // Film positions that keep their distance from each other: a (0,m,2)-net whose generator matrix is found by search when
-// rendering begins, moved around at random from pixel to pixel. Further dimensions are padded pairs (SobolSampler), as
-// in pbrt-v3. Source: Grünschloß and Keller, (t,m,s)-Nets and Maximized Minimum Distance, Part II, 2009.
+// rendering begins, moved around at random from pixel to pixel and from set to set. Further dimensions are pairs of
+// SobolSampler's. Source: Grünschloß and Keller, (t,m,s)-Nets and Maximized Minimum Distance, Part II, 2009.
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -8,6 +10,7 @@
 
 #include "core/base/sobol.h"
 #include "core/plugin/registry.h"
+#include "plugins/shared/sample_sets.h"
 #include "plugins/shared/sobol_sampler.h"
 
 namespace whit {
@@ -77,6 +80,16 @@ class MaxMinDist final : public SobolSampler {
  public:
   int dimensions = 4;  ///< pbrt's; here no dimension is worse than another.
 
+  void check(Diagnostics&, SourcePos) override { set_samples_per_pixel(pixel_samples); }
+  int set_samples_per_pixel(int n) override {
+    asked_ = n;
+    return pixel_samples = static_cast<int>(std::bit_ceil(static_cast<uint32_t>(std::clamp(n, 1, kMaxSamples))));
+  }
+  std::string rounding() const override {
+    return asked_ == pixel_samples ? "" : fmt::format("maxmindist takes powers of two; {} were asked for", asked_);
+  }
+  bool extends() const override { return false; }
+
   bool prepare(const PrepareContext&) override {
     const int bits = std::bit_width(static_cast<uint32_t>(pixel_samples)) - 1;
     heights_.clear();
@@ -90,10 +103,11 @@ class MaxMinDist final : public SobolSampler {
       return;
     }
     const uint32_t base = mix32(seed ^ 0x4d4d6469u), mask = static_cast<uint32_t>(pixel_samples) - 1;
+    const int bits = std::bit_width(mask);
     const float width = 1 / static_cast<float>(pixel_samples);
     const uint32_t* const heights = heights_.data();
     for_lanes(keys.n, [=, px = keys.px, py = keys.py, sample = keys.index](int i) {
-      const uint32_t pixel = pixel_key(base, px[i], py[i]);
+      const uint32_t pixel = pixel_key(base, px[i], py[i]) ^ set_key(sample[i] >> bits);
       const uint32_t at = sample[i] & mask, jitter = hash_combine(pixel, at);
       // Moved on the torus by whole cells, so that distances stay, and jittered within the cell.
       const uint32_t x = (at + pixel) & mask, y = (heights[at] + (pixel >> 16)) & mask;
@@ -105,13 +119,15 @@ class MaxMinDist final : public SobolSampler {
  private:
   static float min_below_one(float x) { return x < kBelowOne ? x : kBelowOne; }
 
+  int asked_ = 16;                 ///< Before rounding.
   std::vector<uint32_t> heights_;  ///< Empty when there are too many samples for a search.
 };
 
-const Register<MaxMinDist> maxmindist{
-    "maxmindist", "Film positions far from each other; scrambled Sobol points elsewhere.", pixelsamples_param(),
-    param(&MaxMinDist::dimensions, "dimensions", 4, Unit::None,
-          "Accepted for pbrt's sake; every dimension is as good as the first.")};
+const Register<MaxMinDist> maxmindist{"maxmindist",
+                                      "Film positions far from each other; scrambled Sobol points elsewhere.",
+                                      pixelsamples_param("Samples per pixel; rounded up to a power of two."),
+                                      param(&MaxMinDist::dimensions, "dimensions", 4, Unit::None,
+                                            "Accepted for pbrt's sake; every dimension is as good as the first.")};
 
 }  // namespace
 }  // namespace whit

@@ -18,6 +18,7 @@ class Random final : public Sampler {
 
   int samples_per_pixel() const override { return pixel_samples; }
   int set_samples_per_pixel(int n) override { return pixel_samples = std::clamp(n, 1, kMaxSamples); }
+  bool extends() const override { return true; }
 
   void get_1d(const SampleKeys& keys, int dimension, float* u) const override {
     const uint32_t key = hash_combine(mix32(seed ^ 0x52616e64u), static_cast<uint32_t>(dimension));

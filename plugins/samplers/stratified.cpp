@@ -2,6 +2,8 @@
 // cells also spread evenly over its columns, and the reverse (correlated multi-jitter), which plain jitter as in pbrt-v3
 // does not promise. Source: Kensler, Correlated Multi-Jittered Sampling, Pixar Technical Memo 13-01, 2013.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -9,6 +11,7 @@
 #include "core/base/radical_inverse.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/sampler.h"
+#include "plugins/shared/sample_sets.h"
 
 namespace whit {
 namespace {
@@ -29,9 +32,16 @@ class Stratified final : public Sampler {
 
   int samples_per_pixel() const override { return xsamples * ysamples; }
   bool is_regular() const override { return !jitter; }
+  bool extends() const override { return false; }
+  std::string rounding() const override {
+    return asked_ == 0 || asked_ == samples_per_pixel()
+               ? ""
+               : fmt::format("stratified takes a grid of {} x {}; {} were asked for", xsamples, ysamples, asked_);
+  }
 
   /// The grid nearest to square that holds n samples; the declared one where that holds n.
   int set_samples_per_pixel(int n) override {
+    asked_ = n;
     n = std::clamp(n, 1, kMaxSamples);
     if (declared_.x == 0) declared_ = {xsamples, ysamples};
     if (n == declared_.x * declared_.y) {
@@ -102,13 +112,11 @@ class Stratified final : public Sampler {
   void begin(const SampleKeys& keys, int first, int n, uint32_t purpose, uint32_t* key, uint32_t* index) const {
     const uint32_t base = hash_combine(mix32(seed ^ 0x53747261u), purpose);
     const int32_t *px = keys.px + first, *py = keys.py + first;
-    const uint32_t last = static_cast<uint32_t>(samples_per_pixel()) - 1;
-    const uint32_t *sample = keys.index + first, *stream = keys.stream + first;
-    for_lanes(n, [=](int i) {
-      key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]);
-      index[i] = sample[i] < last ? sample[i] : last;
-    });
-    permute(n, last + 1, 0, key, index);
+    const auto count = static_cast<uint32_t>(samples_per_pixel());
+    const uint32_t* const stream = keys.stream + first;
+    for_lanes(n, [=](int i) { key[i] = hash_combine(pixel_key(base, px[i], py[i]), stream[i]); });
+    split_sets(n, count, keys.index + first, key, index);
+    permute(n, count, 0, key, index);
   }
 
   static void permute(int n, uint32_t count, uint32_t salt, const uint32_t* key, uint32_t* index) {
@@ -117,6 +125,7 @@ class Stratified final : public Sampler {
   }
 
   Vec2i declared_{0, 0};  ///< The scene's own grid, once a number of samples has been set.
+  int asked_ = 0;         ///< That number, before rounding.
 };
 
 constexpr Range kSide{1, 1 << 16};

@@ -405,6 +405,23 @@ class Differences(unittest.TestCase):
                 self.assertAlmostEqual(float(bright), 1 - w / 2, delta=0.046)
                 self.assertAlmostEqual(float(dark), w / 2, delta=0.046)
 
+    def test_any_number_of_samples(self):
+        for sampler, flags, said in (
+                ("sobol", (), "100 samples per pixel, "), ("02sequence", (), "100 samples per pixel, "),
+                ("sobol", ("--spp", "7"), "7 samples per pixel, "),
+                ("maxmindist", (), "128 samples per pixel (maxmindist takes powers of two; 100 were asked for), "),
+                ("maxmindist", ("--spp", "7"), "8 samples per pixel (maxmindist takes powers of two; 7 were asked for), "),
+                ("maxmindist", ("--spp", "8"), "8 samples per pixel, "),
+                ("stratified", ("--spp", "7"), "8 samples per pixel (stratified takes a grid of 2 x 4; 7 were asked for), ")):
+            with self.subTest(sampler=sampler, flags=flags):
+                text = scene('LightSource "point"', samples=100).replace("halton", sampler)
+                if sampler == "stratified":
+                    text = text.replace('"integer pixelsamples" [100]', "")
+                self.save(text)
+                done = self.run_whit("s.pbrt", "--outfile", "x.exr", "--display", "none", *flags)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertIn(said, done.stderr)
+
     def test_other_samplers(self):
         self.render(scene('LightSource "point"').replace("halton", "nosuchsampler"), said="halton is used instead")
 
