@@ -132,11 +132,14 @@ struct FilmUnits {
   const FilterTable& filter;
   std::span<const TileSums> sums;
   std::span<const double> weights;  ///< By unit; empty where all have the same number.
+  int colour = -1;                  ///< 0 or 1: the units of this colour alone.
 
   double weight(size_t unit) const { return weights.empty() ? 1.0 : weights[unit]; }
   template <class Body>
   void each_around(Vec2i pixel, const Body& body) const {
-    grid.each_around(pixel, filter, body);
+    grid.each_around(pixel, filter, [&](size_t unit) {
+      if (colour < 0 || static_cast<int>(unit & 1) == colour) body(unit);
+    });
   }
 };
 

@@ -171,6 +171,7 @@ struct FilmRender::Impl {
       if (pass[u].doubled) sums[u].halve_blocks();
       from = std::min(from, pass[u].have), to = std::max(to, pass[u].want);
     });
+    if (from > to) return report_progress();
     for (uint32_t at = from; at < to && !stopped;) {
       const uint32_t end = std::min(to, at / round * round + round);
       add_round(worker, task, at, end);
@@ -348,18 +349,18 @@ Picture FilmRender::picture() const {
   Picture picture = impl_->window;
   const std::vector<double> weights = impl_->weights();
   impl_->on_threads([&] {
-    resolve_film({impl_->grid, impl_->filter, impl_->sums, weights}, impl_->film_scale(), picture);
+    resolve_film({impl_->grid, impl_->filter, impl_->sums, weights, -1}, impl_->film_scale(), picture);
   });
   return picture;
 }
 
-std::vector<float> FilmRender::variance() const {
+std::vector<float> FilmRender::variance(int colour) const {
   const Picture& of = impl_->window;
   const auto width = static_cast<size_t>(of.width());
   const double scale2 = static_cast<double>(impl_->film_scale()) * static_cast<double>(impl_->film_scale());
   std::vector<float> out(3 * width * static_cast<size_t>(of.height()));
   const std::vector<double> weights = impl_->weights();
-  const FilmUnits film{impl_->grid, impl_->filter, impl_->sums, weights};
+  const FilmUnits film{impl_->grid, impl_->filter, impl_->sums, weights, colour};
   impl_->on_threads([&] {
     tbb::parallel_for(0, of.height(), [&](int row) {
       for (size_t x = 0; x < width; ++x) {
@@ -381,7 +382,7 @@ RenderResult FilmRender::result() const {
     const std::vector<double> weights = of.weights();
     of.on_threads([&] {
       result.aovs = resolve_aovs(of.scene, of.aovs, of.options.aovs.place, of.aov_tiles,
-                                 {of.grid, of.filter, of.sums, weights}, result.picture.window);
+                                 {of.grid, of.filter, of.sums, weights, -1}, result.picture.window);
     });
   }
   for (const Worker& w : of.workers) result.statistics.add(w.statistics);

@@ -45,7 +45,8 @@ class FilmRender {
   Picture picture() const;
   /// Variance of each pixel's channels (of the mean, not of a sample), three for each pixel of the picture's window, by
   /// four blocks of samples: a bit too high where samples are better spread than random ones. Needs RenderOptions::blocks.
-  std::vector<float> variance() const;
+  /// Of the samples of one colour of units if that is given: infinite for pixels that have none.
+  std::vector<float> variance(int colour = -1) const;
 
   /// What the film is cut into.
   struct Unit {

@@ -15,15 +15,15 @@ struct RenderOptions {
   int threads = 0;                ///< 0: one per core.
   bool crop_given = false;        ///< crop overrides the film's.
   double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1 as fractions of the picture.
-  AovRequest aovs;                ///< What the picture holds beside its colours.
+  AovRequest aovs{};              ///< What the picture holds beside its colours.
   bool blocks = false;            ///< Keep sums of four blocks of samples, from which the error can be told.
   bool adaptive = false;          ///< Smaller units, which may have different numbers of samples (film_render.h).
   bool time_stages = false;       ///< Fills the statistics' seconds by stage.
   /// Called now and then, from one thread at a time, with the share done in [0,1]; returning false stops.
-  std::function<bool(double)> progress;
+  std::function<bool(double)> progress{};
   /// Called from any worker when a tile's own samples are done: its window and linear RGB, row by row, without what
   /// the neighbours' samples add within the filter's reach. For previews.
-  std::function<void(const Box2i&, std::span<const float>)> tile_done;
+  std::function<void(const Box2i&, std::span<const float>)> tile_done{};
 };
 
 struct RenderResult {

@@ -152,7 +152,7 @@ Picture constant_picture(const char* filter_name, double radius, const RGB& colo
     }
   }
   const TileGrid grid{{-1, -1}, 5, 4};
-  resolve_film({grid, table, tiles, {}}, scale, picture);
+  resolve_film({grid, table, tiles, {}, -1}, scale, picture);
   return picture;
 }
 
@@ -183,7 +183,7 @@ TEST(ResolveFilm, APixelWithoutSamplesIsBlackAndNegativeResultsToo) {
   picture.resolution = {2, 1};
   picture.window = {{0, 0}, {2, 1}};
   const TileGrid grid{{0, 0}, 1, 1};
-  resolve_film({grid, table, tiles, {}}, 1, picture);
+  resolve_film({grid, table, tiles, {}, -1}, 1, picture);
   EXPECT_EQ(picture.rgb, (std::vector<float>{2, 2, 0, 0, 0, 0}));
 }
 
@@ -203,7 +203,7 @@ TEST(ResolveFilm, ASampleNearATilesEdgeReachesBothSides) {
   picture.resolution = {32, 16};
   picture.window = {{15, 8}, {17, 9}};
   const TileGrid grid{{0, 0}, 2, 1};
-  resolve_film({grid, table, tiles, {}}, 1, picture);
+  resolve_film({grid, table, tiles, {}, -1}, 1, picture);
   ASSERT_EQ(picture.rgb.size(), 6u);
   EXPECT_EQ(picture.rgb[0], 1);
   EXPECT_NEAR(picture.rgb[3], 0.4 / 1.3, 0.01);

@@ -1,0 +1,302 @@
+#include "core/accuracy/target.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/render/film_render.h"
+
+namespace whit {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr uint32_t kFirstPass = 64;
+constexpr uint32_t kSet = 16;  ///< Samples that a sampler spreads together which cannot go on.
+constexpr double kWorthDoubling = 1.4;
+
+double seconds_until(Clock::time_point then) { return std::chrono::duration<double>(then - Clock::now()).count(); }
+
+class TargetRender {
+ public:
+  TargetRender(const BuiltWorld& world, const RenderOptions& options, const TargetRequest& request)
+      : request_(request),
+        reach_(reach_of(*world.scene)),
+        deadline_(request.deadline.value_or(Clock::time_point::max())),
+        film_(*world.scene, with_progress(options, world)),
+        units_(film_.units()) {
+    for (const FilmRender::Unit& u : units_) areas_.push_back(area_of(u));
+    pixels_ = std::accumulate(areas_.begin(), areas_.end(), 0.0);
+  }
+
+  TargetOutcome run() {
+    out_.end = first_pass();
+    if (out_.end == TargetEnd::Met) out_.end = request_.error > 0 ? approach() : use_time();
+    finish();
+    return std::move(out_);
+  }
+
+ private:
+  static int reach_of(const Scene& scene) {
+    const FilterTable filter(scene.filter());
+    return std::max(filter.x_reach(), filter.y_reach());
+  }
+
+  static double area_of(const FilmRender::Unit& u) {
+    double area = 0;
+    for (int y = u.pixels.min.y; y < u.pixels.max.y; ++y) {
+      for (int x = u.pixels.min.x; x < u.pixels.max.x; ++x) area += u.holds(x, y);
+    }
+    return area;
+  }
+
+  // ---- Passes ----
+
+  RenderOptions with_progress(RenderOptions options, const BuiltWorld& world) {
+    options.blocks = options.adaptive = true;
+    options.progress = [this, &world](double share) {
+      if (!world.keep_going && world.textures->failed()) return false;
+      if (Clock::now() >= deadline_) return false;
+      pass_share_ = share;
+      return tell();
+    };
+    return options;
+  }
+
+  bool tell() {
+    if (!request_.progress) return true;
+    TargetState state{claim_, 0, samples() / pixels_};
+    const double pass = pass_share_ * pass_samples_;
+    if (request_.deadline) {
+      const double all = std::chrono::duration<double>(deadline_ - start_).count();
+      state.share = 1 - std::max(0.0, seconds_until(deadline_)) / std::max(all, 1e-9);
+    }
+    if (request_.error > 0) state.share = std::max(state.share, (samples() + pass) / std::max(expected_, 1.0));
+    state.share = std::min(state.share, 1.0);
+    return request_.progress(state);
+  }
+
+  double samples() const {
+    double sum = 0;
+    for (size_t u = 0; u < units_.size(); ++u) sum += areas_[u] * units_[u].samples;
+    return sum;
+  }
+
+  /// Seconds that so many more samples take.
+  double seconds_for(double more) const { return more * rate_; }
+
+  /// Extends the film; false when it was stopped. `want` by unit.
+  bool pass(const std::vector<uint32_t>& want) {
+    pass_samples_ = 0, pass_share_ = 0;
+    for (size_t u = 0; u < want.size(); ++u)
+      pass_samples_ += areas_[u] * (want[u] - std::min(want[u], units_[u].samples));
+    const auto start = Clock::now();
+    const bool complete = film_.extend(want);
+    units_ = film_.units();
+    // The dearest of the last passes: the next is not to be late.
+    const double rate = std::chrono::duration<double>(Clock::now() - start).count() / std::max(pass_samples_, 1.0);
+    rate_ = std::max(rate, 0.5 * (rate_ + rate));
+    pass_samples_ = pass_share_ = 0;
+    return complete;
+  }
+
+  bool pass(uint32_t samples) { return pass(std::vector<uint32_t>(units_.size(), samples)); }
+
+  /// Why a pass was stopped.
+  TargetEnd stopped() const { return Clock::now() >= deadline_ ? TargetEnd::Time : TargetEnd::Stopped; }
+
+  /// Met: done. Where there is a deadline the samples come in small passes, so that there is a picture early.
+  TargetEnd first_pass() {
+    const uint32_t first = std::min(kFirstPass, request_.max_samples);
+    expected_ = pixels_ * first;
+    for (uint32_t n = request_.deadline ? std::min(4u, first) : first;; n = std::min(2 * n, first)) {
+      const double more = pixels_ * (n - units_.front().samples);
+      if (rate_ > 0 && seconds_for(more) > seconds_until(deadline_)) return use_time();
+      if (!pass(n)) return stopped();
+      write_early();
+      if (n == first) return TargetEnd::Met;
+    }
+  }
+
+  void write_early() {
+    if (!request_.deadline || !request_.first_picture || std::exchange(written_, true)) return;
+    const double seconds = request_.first_picture(film_.result());
+    deadline_ -= std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  /// Doubles all samples while there is time, and ends with what of the next doubling fits.
+  TargetEnd use_time() {
+    while (true) {
+      const uint32_t have = units_.front().samples;
+      const double left = seconds_until(deadline_) / std::max(rate_ * pixels_, 1e-30);
+      const double more = std::min({static_cast<double>(have), left, static_cast<double>(request_.max_samples - have)});
+      if (have >= request_.max_samples) return TargetEnd::Samples;
+      if (more < 0.05 * have || more < 1) return TargetEnd::Time;
+      if (!pass(have + static_cast<uint32_t>(more))) return stopped();
+    }
+  }
+
+  // ---- Looks ----
+
+  /// Looks, and adds samples where they are needed, until the target is met.
+  TargetEnd approach() {
+    while (true) {
+      if (look()) return TargetEnd::Met;
+      if (!tell()) return TargetEnd::Stopped;
+      std::vector<uint32_t> want = next();
+      double more = 0;
+      for (size_t u = 0; u < want.size(); ++u) more += areas_[u] * (want[u] - units_[u].samples);
+      if (more == 0) return TargetEnd::Samples;
+      if (seconds_for(more) > seconds_until(deadline_)) return TargetEnd::Time;
+      if (!pass(want)) return stopped();
+    }
+  }
+
+  /// Whether the error is below the target. Only estimates that are get a test, and each its own part of the confidence,
+  /// so that all together are wrong as seldom as is asked for: the k-th a k (k + 1)-th of it.
+  bool look() {
+    picture_ = film_.picture();
+    const std::vector<float> variance = film_.variance();
+    doubts_ = find_doubts(picture_, variance, reach_);
+    const double n = tests_ + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
+    claim_ = claim_error(picture_, variance, doubts_, confidence);
+    if (!(claim_.value <= request_.error)) return false;
+    ++tests_;
+    return claim_.high <= request_.error;
+  }
+
+  /// What the pixels of one colour say of the variance of a sample of the units of the other.
+  std::vector<Allotment> allotments() const {
+    std::vector<Allotment> parts(units_.size());
+    for (size_t u = 0; u < units_.size(); ++u) parts[u] = {areas_[u], 0, units_[u].samples};
+    for (int colour = 0; colour < 2; ++colour) {
+      const std::vector<float> variance = film_.variance(colour);
+      for (size_t tile = 0; tile + 1 < units_.size(); tile += 2) {
+        const size_t from = tile + static_cast<size_t>(colour), to = tile + 1 - static_cast<size_t>(colour);
+        parts[to].variance = mean_variance(variance, units_[from]) * units_[from].samples * parts[to].area;
+      }
+    }
+    return parts;
+  }
+
+  /// Of the pixels of the unit's tile that samples of the variance's colour reach, all channels together.
+  double mean_variance(const std::vector<float>& variance, const FilmRender::Unit& unit) const {
+    const Box2i& window = picture_.window;
+    double sum = 0, n = 0;
+    for (int y = std::max(unit.pixels.min.y, window.min.y); y < std::min(unit.pixels.max.y, window.max.y); ++y) {
+      for (int x = std::max(unit.pixels.min.x, window.min.x); x < std::min(unit.pixels.max.x, window.max.x); ++x) {
+        const size_t p = static_cast<size_t>(y - window.min.y) * static_cast<size_t>(picture_.width()) +
+                         static_cast<size_t>(x - window.min.x);
+        const double v = double{variance[3 * p]} + double{variance[3 * p + 1]} + double{variance[3 * p + 2]};
+        if (std::isfinite(v)) sum += v, n += 1;
+      }
+    }
+    return n > 0 ? sum / n : 0.0;
+  }
+
+  /// The numbers of samples to have after the next pass: twice as many where the target takes that, or, where the
+  /// estimate is below it and not yet sure, in the eighth of the picture that needs it most.
+  std::vector<uint32_t> next() {
+    const std::vector<Allotment> parts = allotments();
+    const double mean = mean_of(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
+    const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
+    const double aim = 0.97 * sure * request_.error * mean;
+    const std::vector<double> ideal = allot(parts, 3 * pixels * aim * aim, request_.max_samples);
+    expected_ = 0;
+    for (size_t u = 0; u < parts.size(); ++u) expected_ += parts[u].area * ideal[u];
+    std::vector<uint32_t> want(parts.size());
+    bool any = false;
+    for (size_t u = 0; u < parts.size(); ++u) {
+      const bool twice = ideal[u] >= kWorthDoubling * parts[u].samples;
+      want[u] = std::min(parts[u].samples * (twice ? 2 : 1), request_.max_samples);
+      any |= want[u] > parts[u].samples;
+    }
+    return any ? want : most_needed(parts);
+  }
+
+  std::vector<uint32_t> most_needed(const std::vector<Allotment>& parts) const {
+    std::vector<size_t> order(parts.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    const auto need = [&](size_t u) {
+      const double n = parts[u].samples;
+      return parts[u].area > 0 ? parts[u].variance / (parts[u].area * n * n) : 0.0;
+    };
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return need(a) > need(b); });
+    std::vector<uint32_t> want;
+    for (const Allotment& p : parts) want.push_back(p.samples);
+    double area = 0;
+    for (const size_t u : order) {
+      if (area >= pixels_ / 8 || need(u) == 0) break;
+      if (2 * want[u] > request_.max_samples) continue;
+      want[u] *= 2, area += parts[u].area;
+    }
+    return want;
+  }
+
+  void finish() {
+    out_.rendered.result = film_.result();
+    out_.rendered.result.complete = out_.end != TargetEnd::Stopped;
+    out_.samples_mean = samples() / pixels_;
+    if (out_.end != TargetEnd::Met) {
+      const Picture& picture = out_.rendered.result.picture;
+      const std::vector<float> variance = film_.variance();
+      doubts_ = find_doubts(picture, variance, reach_);
+      claim_ = claim_error(picture, variance, doubts_, request_.confidence);
+    }
+    out_.claim = claim_, out_.doubts = std::move(doubts_);
+  }
+
+  const TargetRequest& request_;
+  const int reach_;
+  const Clock::time_point start_ = Clock::now();
+  Clock::time_point deadline_;
+  double pass_share_ = 0, pass_samples_ = 0;  ///< Of the pass that is running.
+  double expected_ = 0;                       ///< Samples that the target seems to take, over all pixels.
+  ErrorClaim claim_{std::numeric_limits<double>::infinity(), 0, std::numeric_limits<double>::infinity(), 0};
+  FilmRender film_;
+  std::vector<FilmRender::Unit> units_;
+  std::vector<double> areas_;  ///< Pixels of each unit.
+  double pixels_ = 0;
+  double rate_ = 0;  ///< Seconds per sample and pixel.
+  bool written_ = false;
+  Picture picture_;
+  Doubts doubts_;
+  int tests_ = 0;
+  TargetOutcome out_;
+};
+
+}  // namespace
+
+std::vector<double> allot(std::span<const Allotment> parts, double sum, double most) {
+  std::vector<double> n(parts.size());
+  const auto at = [&](double scale) {
+    double total = 0;
+    for (size_t k = 0; k < parts.size(); ++k) {
+      const Allotment& p = parts[k];
+      const double root = p.area > 0 ? std::sqrt(p.variance / p.area) : 0.0;
+      n[k] = std::clamp(scale * root, static_cast<double>(p.samples), std::max(most, static_cast<double>(p.samples)));
+      if (p.variance > 0) total += p.variance / n[k];
+    }
+    return total;
+  };
+  // The sum falls as the scale grows: halve the interval of its logarithm, over all that is possible.
+  double low = -300, high = 300;
+  for (int step = 0; step < 100; ++step) {
+    const double middle = 0.5 * (low + high);
+    (at(std::exp2(middle)) > sum ? low : high) = middle;
+  }
+  at(std::exp2(high));
+  return n;
+}
+
+TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed) {
+  Diagnostics said;
+  if (!world.scene->sampler().extends()) said = set_samples(world, kSet, seed);
+  TargetOutcome out = TargetRender(world, options, request).run();
+  out.rendered.said = std::move(said);
+  out.rendered.said.append(world.textures->errors());
+  return out;
+}
+
+}  // namespace whit

@@ -1,0 +1,143 @@
+// A film that grows by passes.
+
+#include "core/render/film_render.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "core/session/session.h"
+
+namespace whit {
+namespace {
+
+/// A grey ball in front of a brighter sky, with what is varied.
+struct World {
+  ParsedFile file;
+  BuiltWorld built;
+  const Scene& scene() const { return *built.scene; }
+};
+World world(const std::string& filter, const std::string& sampler = "random") {
+  World out;
+  out.file = read_scene_text("scene",
+                             "Film \"image\" \"integer xresolution\" [40] \"integer yresolution\" [24]\n"
+                             "Camera \"perspective\" \"float fov\" [40]\n" +
+                                 filter + "Sampler \"" + sampler +
+                                 "\"\nWorldBegin\n"
+                                 "LightSource \"infinite\" \"rgb L\" [1 2 3]\n"
+                                 "Translate 0 0 5 Material \"matte\" Shape \"sphere\"\nWorldEnd\n");
+  out.built = build_world(plan_world(out.file.worlds.at(0), *out.file.sources));
+  return out;
+}
+
+const char* const kGaussian = "PixelFilter \"gaussian\" \"float xwidth\" [2] \"float ywidth\" [2]\n";
+
+TEST(FilmRender, PassesAreOnePicture) {
+  for (const char* filter : {"", kGaussian}) {
+    const World of = world(filter);
+    FilmRender once(of.scene(), {}), twice(of.scene(), {}), blocks(of.scene(), {.threads = 1, .blocks = true});
+    ASSERT_TRUE(once.extend(256));
+    ASSERT_TRUE(twice.extend(64) && twice.extend(256));
+    ASSERT_TRUE(blocks.extend(128) && blocks.extend(256));
+    EXPECT_EQ(once.picture().rgb, twice.picture().rgb) << filter;
+    EXPECT_EQ(once.picture().rgb, blocks.picture().rgb) << filter;
+  }
+}
+
+TEST(FilmRender, FilmsThatGrowInTurnAreThoseThatGrowAlone) {
+  const World of = world(kGaussian);
+  FilmRender alone(of.scene(), {}), a(of.scene(), {}), b(of.scene(), {});
+  alone.extend(8);
+  FilmRender* const films[] = {&a, &b};
+  const uint32_t samples[] = {8};
+  ASSERT_TRUE(FilmRender::extend_in_turn(films, samples));
+  EXPECT_EQ(a.picture().rgb, alone.picture().rgb);
+  EXPECT_EQ(b.picture().rgb, alone.picture().rgb);
+  EXPECT_GT(a.cpu_seconds(), 0);
+}
+
+TEST(FilmRender, UnitsCoverEachPixelOnce) {
+  const World of = world(kGaussian);
+  FilmRender film(of.scene(), {.adaptive = true});
+  for (int y = 0; y < 24; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      int covered = 0;
+      for (const FilmRender::Unit& u : film.units())
+        covered +=
+            u.holds(x, y) && x >= u.pixels.min.x && x < u.pixels.max.x && y >= u.pixels.min.y && y < u.pixels.max.y;
+      EXPECT_EQ(covered, 1) << x << ',' << y;
+    }
+  }
+}
+
+TEST(FilmRender, UnitsHaveTheSamplesTheyAreGivenForAnyThreads) {
+  const World of = world(kGaussian);
+  const auto render_with = [&](int threads) {
+    FilmRender film(of.scene(), {.threads = threads, .blocks = true, .adaptive = true});
+    film.extend(16);
+    std::vector<uint32_t> want(film.units().size(), 16);
+    for (size_t u = 0; u < want.size(); u += 3) want[u] = 32;
+    film.extend(want);
+    for (size_t u = 0; u < want.size(); ++u) EXPECT_EQ(film.units()[u].samples, want[u]);
+    std::vector<float> all = film.picture().rgb;
+    const std::vector<float> variance = film.variance();
+    all.insert(all.end(), variance.begin(), variance.end());
+    return all;
+  };
+  EXPECT_EQ(render_with(1), render_with(3));
+}
+
+/// The sky is 2 in green and nothing else is there, so that the value of a pixel says how its weights add up; and on an
+/// even slope a symmetric filter gives the middle's value, unless the denser side pulls it.
+TEST(TileSums, ADenserUnitPullsNoFilter) {
+  const World of = world(kGaussian);
+  const FilterTable filter(of.scene().filter());
+  const TileGrid grid{{0, 0}, 2, 1, 16, 1};
+  std::vector<TileSums> sums;
+  sums.emplace_back(Vec2i(0, 0), filter), sums.emplace_back(Vec2i(1, 0), filter);
+  const int sides[2] = {4, 16};  // samples on a grid of so many by so many in each pixel
+  for (int t = 0; t < 2; ++t) {
+    const int n = sides[t] * 16;
+    for (int j = 0; j < n; ++j) {
+      for (int i = 0; i < n; ++i) {
+        const float x = 16 * t + (i + 0.5f) / sides[t], y = (j + 0.5f) / sides[t];
+        sums[t].add(x, y, RGB(x));
+      }
+    }
+  }
+  const std::vector<double> weights{1.0 / 16, 1.0 / 256};
+  Picture picture;
+  picture.window = {{15, 8}, {17, 9}};
+  resolve_film({grid, filter, sums, weights, -1}, 1, picture);
+  // The middles of pixels 15 and 16; the filter's table has steps of 1/32, and the grids of samples of 1/4 and 1/16.
+  EXPECT_NEAR(picture.rgb[0], 15.5, 0.01);
+  EXPECT_NEAR(picture.rgb[3], 16.5, 0.01);
+  resolve_film({grid, filter, sums, {}, -1}, 1, picture);
+  EXPECT_GT(picture.rgb[0], 15.6);
+}
+
+TEST(TileSums, VarianceIsThatOfTheMeanOfFourBlocks) {
+  const World of = world("");
+  const FilterTable filter(of.scene().filter());
+  const TileGrid grid{{0, 0}, 1, 1};
+  std::vector<TileSums> sums;
+  sums.emplace_back(Vec2i(0, 0), filter, 16, true);
+  const auto variance = [&] { return block_variance({grid, filter, sums, {}, -1}, {3, 3}); };
+  EXPECT_TRUE(std::isinf(variance().x));
+  for (int k = 0; k < 2; ++k) sums[0].add(3.5f, 3.5f, RGB(1), 0);
+  EXPECT_TRUE(std::isinf(variance().x));
+  for (int b = 1; b < 4; ++b) {
+    for (int k = 0; k < 2; ++k) sums[0].add(3.5f, 3.5f, {1.0f + b, 1, 0}, b);
+  }
+  // Reds 1, 2, 3, 4: their variance is 5/3, that of the mean of four a fourth of it.
+  EXPECT_NEAR(variance().x, 5.0 / 12, 1e-6);
+  EXPECT_NEAR(variance().y, 0, 1e-12);
+  EXPECT_NEAR(variance().z, (0.75 * 0.75 + 3 * 0.25 * 0.25) / 12, 1e-6);  // 1 0 0 0: off by 3/4 and thrice 1/4
+  sums[0].halve_blocks();
+  // 1.5 and 3.5 of equal weight: ((1)^2 / 2 + (1)^2 / 2) / 1.
+  EXPECT_NEAR(variance().x, 1, 1e-6);
+  EXPECT_EQ(sums[0].at(3, 3)[3], 8);
+}
+
+}  // namespace
+}  // namespace whit
