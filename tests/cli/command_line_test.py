@@ -363,6 +363,15 @@ class Rendering(Case):
                      b"Software"):
             self.assertIn(what, header)
 
+    def test_every_seed_is_in_the_header(self):
+        # Up to the largest of 32 bits, as text: an OpenEXR attribute is name, type, length and value.
+        for seed in (b"0", b"2147483648", b"4294967295"):
+            self.good("a scene.pbrt", "--quiet", "--seed", seed.decode())
+            self.assertIn(b"whit:seed\0string\0" + len(seed).to_bytes(4, "little") + seed,
+                          self.bytes("film-name.exr")[:8192])
+            self.assertIn(b"whit:seed\0" + seed, self.bytes("film-name.png")[:8192])
+        self.fails(2, "--seed", "a scene.pbrt", "--seed", "4294967296")
+
     def test_views_and_exposure_change_the_display_picture_only(self):
         def pair(*flags):
             self.good("a scene.pbrt", "--quiet", "-o", "v.exr", *flags)

@@ -225,7 +225,7 @@ class RenderJob {
             {"whit:command", settings_.command_line},
             {"whit:scene", path_},
             {"whit:samplesPerPixel", scene.samples_per_pixel},
-            {"whit:seed", static_cast<int>(settings_.seed)},
+            {"whit:seed", std::to_string(settings_.seed)},  // Text, since an OpenEXR int ends at half of the seeds.
             {"whit:renderSeconds", static_cast<float>(result.seconds)}};
   }
 
