@@ -1,4 +1,4 @@
-// A file that appears complete or not at all (used by write.cpp; not for other folders).
+// A file that appears complete or not at all (for pictures: write.h).
 #pragma once
 
 #include <cstddef>

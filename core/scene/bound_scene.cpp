@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
@@ -10,6 +11,16 @@
 
 namespace whit {
 namespace {
+
+constexpr const char *kDefaultSampler = "sobol", *kStandInSampler = "halton";
+constexpr const char *kDefaultIntegrator = "whitted", *kStandInIntegrator = "whitted";
+/// Those of pbrt-v3 that we do not have, and what is nearest to them.
+constexpr std::array<const char*, 4> kPbrtIntegrators = {"volpath", "bdpt", "mlt", "sppm"};
+constexpr const char* kNearestIntegrator = "path";
+
+bool is_pbrt_integrator(const std::string& name) {
+  return std::find(kPbrtIntegrators.begin(), kPbrtIntegrators.end(), name) != kPbrtIntegrators.end();
+}
 
 /// What to do with a statement whose plugin name is not known.
 struct Unknown {
@@ -244,16 +255,16 @@ class Binder {
     return kept;
   }
 
-  /// A sampler we do not have is replaced by halton at the same number of samples.
+  /// A sampler we do not have is replaced at the same number of samples.
   void bind_sampler() {
     const Entity& entity = description_.sampler;
     if (entity.plugin.empty() || find_plugin("sampler", entity.plugin)) {
-      scene_.sampler = bind_option<Sampler>(entity, "sampler", "sobol", {});
+      scene_.sampler = bind_option<Sampler>(entity, "sampler", kDefaultSampler, {});
       return;
     }
-    const PluginInfo* halton =
-        find(entity, "sampler", {Severity::Warning, "halton", "halton is used instead, at the same number of samples"});
-    scene_.sampler = bind_as<Sampler>(entity, *halton, keep_only(entity.params, {"pixelsamples"}));
+    const std::string remedy = fmt::format("{} is used instead, at the same number of samples", kStandInSampler);
+    const PluginInfo* stand_in = find(entity, "sampler", {Severity::Warning, kStandInSampler, remedy.c_str()});
+    scene_.sampler = bind_as<Sampler>(entity, *stand_in, keep_only(entity.params, {"pixelsamples"}));
     scene_.sampler.replaced = true;
   }
 
@@ -261,16 +272,15 @@ class Binder {
   void bind_integrator() {
     const Entity& entity = description_.integrator;
     if (entity.plugin.empty() || find_plugin("integrator", entity.plugin)) {
-      scene_.integrator = bind_option<Integrator>(entity, "integrator", "whitted", {});
+      scene_.integrator = bind_option<Integrator>(entity, "integrator", kDefaultIntegrator, {});
       return;
     }
-    static const std::vector<std::string> pbrt = {"volpath", "bdpt", "mlt", "sppm"};
-    const bool known = std::find(pbrt.begin(), pbrt.end(), entity.plugin) != pbrt.end();
-    const std::string stand_in = known ? "path" : "whitted";
-    std::string remedy = "the picture is made with " + stand_in;
+    const bool known = is_pbrt_integrator(entity.plugin);
+    const PluginInfo& stand_in = integrator_in_force(description_);
+    std::string remedy = "the picture is made with " + stand_in.name;
     if (!known) {
       std::vector<std::string> names = plugin_names("integrator");
-      names.insert(names.end(), pbrt.begin(), pbrt.end());
+      names.insert(names.end(), kPbrtIntegrators.begin(), kPbrtIntegrators.end());
       const std::string hint = did_you_mean(entity.plugin, names);
       if (!hint.empty()) remedy += '\n' + hint;
     }
@@ -278,8 +288,7 @@ class Binder {
             fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"), remedy});
     std::vector<std::string> shared{"maxdepth", "pixelbounds"};
     if (known) shared.insert(shared.end(), {"rrthreshold", "lightsamplestrategy"});
-    scene_.integrator =
-        bind_as<Integrator>(entity, *find_plugin("integrator", stand_in), keep_only(entity.params, shared));
+    scene_.integrator = bind_as<Integrator>(entity, stand_in, keep_only(entity.params, shared));
     scene_.integrator.replaced = true;
   }
 
@@ -379,6 +388,19 @@ class Binder {
 };
 
 }  // namespace
+
+const PluginInfo& sampler_in_force(const SceneDescription& world) {
+  const std::string& name = world.sampler.plugin;
+  if (const PluginInfo* named = find_plugin("sampler", name)) return *named;
+  return *find_plugin("sampler", name.empty() ? kDefaultSampler : kStandInSampler);
+}
+
+const PluginInfo& integrator_in_force(const SceneDescription& world) {
+  const std::string& name = world.integrator.plugin;
+  if (const PluginInfo* named = find_plugin("integrator", name)) return *named;
+  if (is_pbrt_integrator(name)) return *find_plugin("integrator", kNearestIntegrator);
+  return *find_plugin("integrator", name.empty() ? kDefaultIntegrator : kStandInIntegrator);
+}
 
 const AreaLight* BoundScene::emission_of(const ShapeDescription& shape) const {
   if (shape.area_light < 0) return nullptr;

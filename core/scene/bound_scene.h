@@ -18,6 +18,13 @@
 
 namespace whit {
 
+struct PluginInfo;
+
+/// What samples and integrates a world: the plugin of its statement, the default where the file has none, or the one
+/// that stands in where nobody has registered the one that is named.
+const PluginInfo& sampler_in_force(const SceneDescription& world);
+const PluginInfo& integrator_in_force(const SceneDescription& world);
+
 /// A texture that a parameter names.
 struct TextureUse {
   std::string parameter;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <future>
 
@@ -115,7 +114,7 @@ OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film) {
 
 WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
                            const std::vector<OutputMetadata>& metadata) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   WrittenOutput out;
   // Compressing is most of it, and there is more than one core.
   std::future<Diagnostics> display;
@@ -124,7 +123,7 @@ WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
   }
   out.said = write_file(plan.main_file, plan, result, metadata);
   if (display.valid()) out.said.append(display.get());
-  out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.elapsed = watch.elapsed();
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/diagnostics.h"
+#include "core/base/stopwatch.h"
 #include "core/color/display.h"
 #include "core/image/write.h"
 #include "core/render/render.h"
@@ -42,7 +43,7 @@ OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film);
 /// What came of writing. Nothing of it has a place in the scene.
 struct WrittenOutput {
   Diagnostics said;
-  double seconds = 0;
+  Elapsed elapsed;
 };
 WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
                            const std::vector<OutputMetadata>& metadata);

@@ -1,7 +1,6 @@
 #include "core/session/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "core/plugin/registry.h"
@@ -11,16 +10,12 @@
 namespace whit {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
 ParsedFile parsed_file(const std::function<ParseResult(Sources&)>& parse) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   ParsedFile file;
   ParseResult parsed = parse(*file.sources);
   file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
-  file.seconds = since(start);
+  file.elapsed = watch.elapsed();
   return file;
 }
 
@@ -53,7 +48,7 @@ void use_integrator(ParsedFile& file, const std::string& name) {
 }
 
 PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   PlannedWorld out;
   const ValuePosition position = [&sources](const Parameter& p, size_t i) { return value_position(sources, p, i); };
   Diagnostics unweighed;
@@ -61,7 +56,7 @@ PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, c
   out.plan = plan_effects(out.bound, options);
   out.said = weigh_problems(out.bound, out.plan);
   check_build(out.plan, out.said);
-  out.seconds = since(start);
+  out.elapsed = watch.elapsed();
   return out;
 }
 
@@ -87,13 +82,13 @@ Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics
 }
 
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options, size_t texture_bytes) {
-  const auto start = Clock::now();
+  const Stopwatch watch;
   BuiltWorld out;
   out.textures = std::make_unique<TextureStore>();
   out.textures->set_memory_limit(texture_bytes);
   out.keep_going = options.keep_going;
   out.scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, *out.textures, out.said);
-  out.seconds = since(start);
+  out.elapsed = watch.elapsed();
   return out;
 }
 
@@ -114,9 +109,11 @@ RenderedWorld render_world(const BuiltWorld& world, RenderOptions options) {
   options.progress = [&world, report = std::move(options.progress)](double share) {
     return (!report || report(share)) && (world.keep_going || !world.textures->failed());
   };
+  const Stopwatch watch;
   RenderedWorld out;
   out.result = render(*world.scene, options);
   out.said = world.textures->errors();
+  out.elapsed = watch.elapsed();
   return out;
 }
 

@@ -2,7 +2,7 @@
 // renders (the command, the benchmark, tests, a program that has whit as a library) takes one step after another and
 // decides in between what to do about what was said.
 //
-// A step returns what it made with all that was said of it and the seconds it took. It neither prints nor exits. Where
+// A step returns what it made with all that was said of it and the time it took. It neither prints nor exits. Where
 // `said` has errors, what was made is what is usable, and may be taken on; ErrorClass says what kind of error it is.
 #pragma once
 
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/stopwatch.h"
 #include "core/image/texture_store.h"
 #include "core/render/render.h"
 #include "core/scene/scene.h"
@@ -24,7 +25,7 @@ struct ParsedFile {
   std::vector<SceneDescription> worlds;  ///< One for each WorldBegin.
   uint64_t bytes = 0;                    ///< Of text, included files counted each time.
   Diagnostics said;
-  double seconds = 0;
+  Elapsed elapsed;
 };
 ParsedFile read_scene_file(const std::string& path, const ParseOptions& options = {});
 /// Text that is no file, under the name that messages show; what it includes is looked for in the current folder.
@@ -39,7 +40,7 @@ struct PlannedWorld {
   BoundScene bound;
   EffectPlan plan;
   Diagnostics said;
-  double seconds = 0;
+  Elapsed elapsed;
 };
 PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options = {});
 
@@ -53,7 +54,7 @@ struct BuiltWorld {
   std::unique_ptr<Scene> scene;  ///< Null when nothing can be rendered.
   bool keep_going = false;       ///< BuildOptions::keep_going, for render_world().
   Diagnostics said;
-  double seconds = 0;
+  Elapsed elapsed;
 };
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options = {},
                        size_t texture_bytes = TextureStore::kDefaultMemory);
@@ -67,6 +68,7 @@ Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed)
 struct RenderedWorld {
   RenderResult result;
   Diagnostics said;
+  Elapsed elapsed;
 };
 RenderedWorld render_world(const BuiltWorld& world, RenderOptions options = {});
 

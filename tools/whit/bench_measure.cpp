@@ -110,9 +110,9 @@ std::optional<SceneFigures> measure_scene(const std::string& name, const ParsedF
   const BuiltWorld fast = build(world, *file.sources, options, repeated);
   out.fast_samples_per_s = samples_per_core(*fast.scene, 1, settings.runs).median;
   out.missed_edges_fast = missed_edges(*fast.scene), out.missed_edges_robust = missed_edges(scene);
-  out.parse_mb_per_s = static_cast<double>(file.bytes) / 1e6 / std::max(1e-9, file.seconds);
+  out.parse_mb_per_s = static_cast<double>(file.bytes) / 1e6 / std::max(1e-9, file.elapsed.wall);
   out.triangles = static_cast<int64_t>(scene.triangle_count());
-  out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built.seconds;
+  out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built.elapsed.wall;
   out.peak_memory = peak_memory();
   return out;
 }

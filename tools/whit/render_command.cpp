@@ -16,6 +16,14 @@
 namespace whit {
 namespace {
 
+/// Also of what was rendered before something failed.
+int write_stats(const RenderStats& stats, const std::string& path) {
+  const std::string problem = stats.write(path);
+  if (problem.empty()) return kDone;
+  say("whit: " + problem);
+  return kFileError;
+}
+
 /// --cat and --toply.
 int print_normal_form(const RenderSettings& s) {
   int code = kDone;
@@ -49,10 +57,11 @@ int render_command(const Arguments& args) {
     threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                     static_cast<size_t>(settings.threads));
   }
+  RenderStats stats(settings.scenes.size());
   for (const std::string& scene : settings.scenes) {
-    if (const int result = render_file(settings, scene); result != kDone) return result;
+    if (code = render_file(settings, scene, stats); code != kDone) break;
   }
-  return kDone;
+  return std::max(code, write_stats(stats, settings.stats_file));
 }
 
 }  // namespace whit

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tools/whit/command_line.h"
+#include "tools/whit/render_stats.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -29,6 +30,23 @@ Arguments split_lists(const Arguments& args) {
     out.push_back(rest);
   }
   return out;
+}
+
+/// Takes the file of `--stats FILE.json` and `--stats=FILE.json` out of the arguments. A word behind a bare --stats is its
+/// file only where it looks like one, since it may be a scene as well.
+std::string take_stats_file(Arguments& args, std::string& file) {
+  const auto names_file = [](std::string_view word) { return word == "-" || word.ends_with(".json"); };
+  for (auto at = args.begin(); at != args.end() && *at != "--";) {
+    const bool joined = at->starts_with("--stats=");
+    if (!joined && !(*at == "--stats" && at + 1 != args.end() && names_file(at[1]))) {
+      ++at;
+      continue;
+    }
+    file = joined ? at->substr(at->find('=') + 1) : at[1];
+    if (!names_file(file)) return fmt::format("--stats: \"{}\" is neither a name that ends in .json nor -", file);
+    at = args.erase(at, at + (joined ? 1 : 2));
+  }
+  return {};
 }
 
 // The effects' flags stand between these two tables.
@@ -68,7 +86,7 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
       {"--quiet", &s.quiet, "No progress and no summary; problems are still reported"},
       {"--strict", &s.strict, "Warnings are errors"},
       {"--keep-going", &s.keep_going, "Render what is usable despite errors"},
-      {"--stats", &s.stats, "More figures at the end"},
+      {"--stats", &s.stats, "More figures at the end; --stats FILE.json (or -): figures as JSON there"},
       {"--cat", &s.cat, "Print the scene in normal form instead of rendering"},
       {"--toply", &s.toply, "The same, with large meshes written to PLY files"},
       {"--display-server", &s.display_server, "Show the picture while it is made: host:port of a tev viewer"},
@@ -91,6 +109,9 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
     return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
   }
+  if (!s.stats_file.empty() && (!s.debug_pixel.empty() || s.cat || s.toply)) {
+    return "--stats FILE.json is of pictures, and none is made";
+  }
   return usage_problem(s.effects);
 }
 
@@ -104,7 +125,7 @@ std::string file_problem(const RenderSettings& s) {
   if (!s.log_dir.empty() && !std::filesystem::is_directory(s.log_dir)) {
     return fmt::format("--logdir: there is no folder \"{}\"", s.log_dir);
   }
-  return {};
+  return stats_file_problem(s.stats_file);
 }
 
 }  // namespace
@@ -127,9 +148,11 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   CommandLine command{"whit", "Renders pbrt-v3 scene files.", flags_of(settings)};
   add_effect_flags(command, settings.effects);
   for (const Flag& flag : more_flags_of(settings)) command.flags.push_back(flag);
-  if (!parse_arguments(command, split_lists(args), code)) return false;
+  Arguments words = split_lists(args);
+  std::string problem = take_stats_file(words, settings.stats_file);
+  if (problem.empty() && !parse_arguments(command, words, code)) return false;
   for (const std::string& a : args) settings.command_line += (settings.command_line.empty() ? "whit " : " ") + a;
-  std::string problem = usage_problem(settings);
+  if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;
   if (settings.scenes.empty()) settings.scenes.push_back("-");
   if (problem.empty()) problem = file_problem(settings), code = kFileError;

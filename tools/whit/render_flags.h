@@ -21,6 +21,7 @@ struct RenderSettings {
   uint32_t seed = 0;
   double texture_memory = 1024;
   bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;
+  std::string stats_file;  ///< For figures as JSON; "-" is standard output, "" none.
   bool cat = false, toply = false;
   int verbosity = 0, min_log_level = 0;
   std::string display_server, log_dir, traversal = "robust", half_or_float = "half";

@@ -23,16 +23,21 @@ namespace {
 /// One scene file on its way to pictures.
 class RenderJob {
  public:
-  RenderJob(const RenderSettings& settings, std::string path)
-      : settings_(settings), path_(std::move(path)), file_(read_scene(path_)), parsed_memory_(resident_memory()) {}
+  RenderJob(const RenderSettings& settings, std::string path, RenderStats& stats)
+      : settings_(settings),
+        path_(std::move(path)),
+        stats_(stats),
+        file_(read_scene(path_)),
+        parsed_memory_(resident_memory()) {}
 
   int run() {
     choose_integrator(settings_.effects, file_);
-    times_.parse = file_.seconds;
+    times_.parse = file_.elapsed;
     // A file with mistakes is reported whole: also what planning would have said of it.
     reported_whole_ = file_.said.has_errors();
     if (int code = report(reported_whole_ ? all_problems(file_) : file_.said); code != kDone) return code;
     if (file_.worlds.empty()) return kSceneError;
+    stats_.expect(file_.worlds.size());
     int worst = kDone;
     for (const SceneDescription& world : file_.worlds) {
       const int code = picture_of(world);
@@ -90,7 +95,7 @@ class RenderJob {
     // What is wrong explains what is surprising.
     if (!planned.said.has_errors()) planned.said.append(find_surprises(world, planned.plan));
     if (reported_whole_) planned.said = {};  // All of it has been said.
-    times_.plan = planned.seconds;
+    times_.plan = planned.elapsed;
     unread_.clear();
     for (const UnreadFile& file : world.unread_files) unread_.insert(file.path);
     if (int code = report(planned.said); code != kDone) return code;
@@ -104,7 +109,7 @@ class RenderJob {
     }
     const BuiltWorld built =
         build_world(std::move(planned), build_options(), static_cast<size_t>(settings_.texture_memory * 1024 * 1024));
-    times_.build = built.seconds;
+    times_.build = built.elapsed;
     if (int code = report(built.said); code != kDone) return code;
     if (!built.scene) return kSceneError;
     return settings_.debug_pixel.empty() ? trace_and_write(built, output) : explain_pixel(built);
@@ -156,14 +161,16 @@ class RenderJob {
   int trace_and_write(const BuiltWorld& built, const OutputPlan& output) {
     const RenderedWorld rendered = trace(built, output.aovs);
     const RenderResult& result = rendered.result;
-    times_.render = result.seconds;
+    times_.render = rendered.elapsed;
     if (int code = report(rendered.said); code != kDone) return code;
     const WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
-    times_.write = written.seconds;
+    times_.write = written.elapsed;
     if (int code = report_output(written.said); code != kDone) return code;
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
+    const RenderOutcome outcome{*built.scene, result, output, *built.textures, times_, unread_.size(), parsed_memory_};
+    stats_.add(settings_, path_, outcome);
     if (settings_.quiet) return kDone;
-    summarise({*built.scene, result, output, *built.textures, times_, unread_.size(), parsed_memory_}, settings_.stats);
+    summarise(outcome, settings_.stats);
     if (!passed_.empty()) name_what_was_passed();
     return kDone;
   }
@@ -231,6 +238,7 @@ class RenderJob {
 
   const RenderSettings& settings_;
   const std::string path_;
+  RenderStats& stats_;
   ParsedFile file_;
   const Sources& sources_ = *file_.sources;
   const double parsed_memory_;  ///< Resident after parsing, in bytes.
@@ -243,6 +251,8 @@ class RenderJob {
 
 }  // namespace
 
-int render_file(const RenderSettings& settings, const std::string& path) { return RenderJob(settings, path).run(); }
+int render_file(const RenderSettings& settings, const std::string& path, RenderStats& stats) {
+  return RenderJob(settings, path, stats).run();
+}
 
 }  // namespace whit

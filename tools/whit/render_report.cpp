@@ -19,8 +19,8 @@ void more_statistics(const RenderOutcome& outcome) {
   say(fmt::format(
       "ready to trace after {}: geometry read in {}, textures and materials prepared in {}, geometry moved to "
       "render space in {}, ray tracer built in {}; {} resident after parsing.",
-      duration_text(times.parse + times.plan + times.build), duration_text(b.read), duration_text(b.prepare),
-      duration_text(b.bake), duration_text(b.accelerate), bytes_text(outcome.parsed_memory)));
+      duration_text(times.parse.wall + times.plan.wall + times.build.wall), duration_text(b.read),
+      duration_text(b.prepare), duration_text(b.bake), duration_text(b.accelerate), bytes_text(outcome.parsed_memory)));
   say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
                   bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(), scene.instances.size(),
                   scene.lights.size()));
@@ -53,9 +53,9 @@ void report_invalid(const RenderStatistics& s) {
 void summarise(const RenderOutcome& outcome, bool with_statistics) {
   const auto& [scene, r, output, textures, times, unread_files, parsed_memory] = outcome;
   const RenderStatistics& s = r.statistics;
-  say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times.parse),
-                  duration_text(times.plan), duration_text(times.build), duration_text(times.render),
-                  duration_text(times.write), r.threads, r.threads == 1 ? "" : "s"));
+  say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times.parse.wall),
+                  duration_text(times.plan.wall), duration_text(times.build.wall), duration_text(times.render.wall),
+                  duration_text(times.write.wall), r.threads, r.threads == 1 ? "" : "s"));
   const auto if_any = [](int64_t rays, const char* what) {
     return rays > 0 ? fmt::format(", {} {}", count_text(rays), what) : std::string();
   };

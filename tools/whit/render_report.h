@@ -7,9 +7,9 @@
 
 namespace whit {
 
-/// Seconds of each step.
+/// What each step took.
 struct StepTimes {
-  double parse = 0, plan = 0, build = 0, render = 0, write = 0;
+  Elapsed parse, plan, build, render, write;
 };
 
 /// A picture that was made, and what making it took.

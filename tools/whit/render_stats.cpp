@@ -1,0 +1,111 @@
+#include "tools/whit/render_stats.h"
+
+#include <fmt/format.h>
+
+#include "core/image/atomic_file.h"
+#include "core/plugin/registry.h"
+#include "tools/whit/terminal.h"
+#include "tools/whit/version.h"
+
+namespace whit {
+namespace {
+
+/// The steps' seconds by one of the two clocks.
+Json seconds(const StepTimes& t, double Elapsed::*clock) {
+  return Json::Object{{"parse", t.parse.*clock},
+                      {"plan", t.plan.*clock},
+                      {"build", t.build.*clock},
+                      {"render", t.render.*clock},
+                      {"write", t.write.*clock}};
+}
+
+Json rays(const RenderStatistics& s) {
+  return Json::Object{
+      {"camera", s.camera_rays},     {"reflection", s.reflection_rays}, {"refraction", s.refraction_rays},
+      {"indirect", s.indirect_rays}, {"passing", s.passing_rays},       {"shadow", s.shadow_rays},
+      {"probe", s.probe_rays}};
+}
+
+/// One value by itself, several as an array.
+Json values_of(const Parameter& p) {
+  Json::Array values;
+  for (const double number : p.numbers()) values.emplace_back(number);
+  for (const int32_t number : p.integers()) values.emplace_back(number);
+  for (const uint8_t truth : p.bools()) values.emplace_back(truth != 0);
+  for (const std::string& text : p.strings()) values.emplace_back(text);
+  return values.size() == 1 ? values.front() : Json(values);
+}
+
+/// What the statement says that the plugin knows.
+Json parameters(const Entity& statement, const PluginInfo& plugin) {
+  Json::Object out;
+  for (const Parameter& p : statement.params) {
+    if (!plugin.find_param(p.name)) continue;
+    std::erase_if(out, [&](const auto& earlier) { return earlier.first == p.name; });  // The last one counts.
+    out.emplace_back(p.name, values_of(p));
+  }
+  return out;
+}
+
+/// All that decides the time, apart from what is in the scene's world.
+Json settings_of(const RenderSettings& asked, const std::string& path, const RenderOutcome& outcome) {
+  const Scene& scene = outcome.scene;
+  const SceneDescription& world = *scene.bound.description;
+  const PluginInfo &integrator = integrator_in_force(world), &sampler = sampler_in_force(world);
+  const Picture& picture = outcome.result.picture;
+  const Box2i& window = picture.window;
+  Json::Array effects;
+  for_effects(scene.plan.needed, [&](Effect e) { effects.emplace_back(effect_name(e)); });
+  return Json::Object{{"scene", path},
+                      {"samples_per_pixel", scene.samples_per_pixel},
+                      {"threads", outcome.result.threads},
+                      {"integrator", integrator.name},
+                      {"integrator_parameters", parameters(world.integrator, integrator)},
+                      {"sampler", sampler.name},
+                      {"sampler_parameters", parameters(world.sampler, sampler)},
+                      {"resolution", Json::Array{picture.resolution.x, picture.resolution.y}},
+                      {"window", Json::Array{window.min.x, window.min.y, window.max.x, window.max.y}},
+                      {"traversal", asked.traversal},
+                      {"texture_memory_mib", asked.texture_memory},
+                      {"effects", effects},
+                      {"aovs", outcome.output.aovs},
+                      {"outfile", outcome.output.main_file},
+                      {"display", outcome.output.display_file},
+                      {"command", asked.command_line},
+                      {"version", version()}};
+}
+
+}  // namespace
+
+std::string stats_file_problem(const std::string& path) {
+  if (path.empty() || path == "-") return {};
+  const AtomicFile file(path);
+  return file.failure().empty() ? "" : fmt::format("cannot write \"{}\": {}", path, file.failure());
+}
+
+void RenderStats::add(const RenderSettings& settings, const std::string& scene, const RenderOutcome& outcome) {
+  const RenderStatistics& s = outcome.result.statistics;
+  pictures_.push_back(Json::Object{{"seconds", seconds(outcome.times, &Elapsed::wall)},
+                                   {"cpu_seconds", seconds(outcome.times, &Elapsed::cpu)},
+                                   {"rays", rays(s)},
+                                   {"samples", s.camera_samples},
+                                   {"memory_bytes", static_cast<int64_t>(peak_memory())},
+                                   {"invalid_samples", s.invalid_samples},
+                                   {"settings", settings_of(settings, scene, outcome)},
+                                   {"seed", settings.seed}});
+}
+
+std::string RenderStats::write(const std::string& path) const {
+  if (path.empty() || pictures_.empty()) return {};
+  const std::string text = to_text(several_ ? Json(pictures_) : pictures_.front()) + '\n';
+  if (path == "-") {
+    fmt::print("{}", text);
+    return std::fflush(stdout) == 0 ? "" : "cannot write to standard output";
+  }
+  AtomicFile file(path);
+  file.write_at(text.data(), text.size(), 0);
+  const std::string problem = file.commit();
+  return problem.empty() ? "" : fmt::format("cannot write \"{}\": {}", path, problem);
+}
+
+}  // namespace whit
