@@ -1,4 +1,4 @@
-// A MIP map with pbrt-v3's filters: trilinear, and elliptically weighted averages (EWA).
+// A MIP map with pbrt-v3's filters, trilinear and elliptically weighted averages (EWA), and without any.
 //
 // Why not OpenImageIO's TextureSystem: scenes were lit with pbrt-v3's filter in mind and its pictures are the
 // reference. OpenImageIO's anisotropic filter takes another footprint and another kernel, and its MIP levels of
@@ -32,14 +32,21 @@ struct MipMapOptions {
   bool flip = true;    ///< t = 0 is the bottom row (imagemap); false: the top row (lights).
 };
 
+/// What a lookup takes of the texels around its point.
+enum class TextureFilter : uint8_t {
+  Ewa,        ///< Their mean over an ellipse, by weights that fall off from its middle.
+  Trilinear,  ///< Their mean over a square, between four texels of two levels.
+  Point       ///< The nearest of the finest level, whatever the footprint.
+};
+
 /// How to filter.
 struct MipFilter {
-  bool trilinear = false;    ///< Otherwise EWA.
+  TextureFilter kind = TextureFilter::Ewa;
   float max_anisotropy = 8;  ///< Longest to shortest axis of the EWA ellipse; kept within [0.01, 256].
 };
 
 /// Footprints of n lookups: st and its change from one pixel to the next along x and y. The four derivative
-/// arrays may all be null, which asks for a bilinear lookup in the finest level.
+/// arrays may all be null, which asks for a bilinear lookup in the finest level (of filters but Point).
 struct LookupPoints {
   int n = 0;
   const float* s = nullptr;

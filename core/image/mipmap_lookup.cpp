@@ -216,6 +216,15 @@ class MipMap::Sampler {
     });
   }
 
+  // The texel whose square (s, t) is in, of the finest level.
+  Value<C> nearest(float s, float t) {
+    const Level& l = use(0);
+    const int x = wrap_texel<kAlongS>(static_cast<int>(std::floor(s * static_cast<float>(l.width))), l.width);
+    const int y = wrap_texel<kAlongT>(static_cast<int>(std::floor(t * static_cast<float>(l.height))), l.height);
+    if (W == WrapMode::Black && (x < 0 || y < 0)) return {};
+    return with_fetch(l, [&](const auto& fetch) { return fetch(static_cast<size_t>(y) * l.width + x); });
+  }
+
   // `width` is the footprint's side in st; not finite means everything.
   Value<C> trilinear(float s, float t, float width) {
     const float level = static_cast<float>(last_) + std::log2(std::max(width, 1e-8f));
@@ -393,14 +402,18 @@ void MipMap::ewa_lookups(S& sampler, const LookupPoints& p, const MipFilter& fil
 
 int MipMap::lookup(const LookupPoints& p, const MipFilter& filter, float* const* out) const {
   const auto run = [&](auto& sampler) {
-    if (p.dsdx && !filter.trilinear) return ewa_lookups(sampler, p, filter, out);
+    const bool point = filter.kind == TextureFilter::Point;
+    if (p.dsdx && filter.kind == TextureFilter::Ewa) return ewa_lookups(sampler, p, filter, out);
     for (int i = 0; i < p.n; ++i) {
       if (!std::isfinite(p.s[i]) || !std::isfinite(p.t[i])) {
         put(out, i, sampler.no_value());
         continue;
       }
       const float s = sampler.reduce_s(p.s[i]), t = sampler.reduce_t(p.t[i]);
-      put(out, i, p.dsdx ? sampler.trilinear(s, t, widest(p, i)) : sampler.bilinear(0, s, t));
+      put(out, i,
+          point    ? sampler.nearest(s, t)
+          : p.dsdx ? sampler.trilinear(s, t, widest(p, i))
+                   : sampler.bilinear(0, s, t));
     }
   };
   return channels_ == 1 ? with_sampler<1>(run) : with_sampler<3>(run);

@@ -69,7 +69,7 @@ std::shared_ptr<const MipMap> ImageTexture::pyramid() const {
 void ImageTexture::lookup(int n, const float* s, const float* t, const float* dsdx, const float* dtdx,
                           const float* dsdy, const float* dtdy, float* r, float* g, float* b) const {
   const LookupPoints points{n, s, t, dsdx, dtdx, dsdy, dtdy};
-  const MipFilter filter{spec_.trilinear, spec_.max_anisotropy};
+  const MipFilter filter{spec_.filter, spec_.max_anisotropy};
   look_up_rgb(n, {r, g, b}, [&](const MipMap& map, float* const* out) { return map.lookup(points, filter, out); });
 }
 
@@ -95,7 +95,7 @@ void ImageTexture::look_up_rgb(int n, const std::array<float*, 3>& out, const Lo
 
 void ImageTexture::lookup_float(int n, const float* s, const float* t, const float* dsdx, const float* dtdx,
                                 const float* dsdy, const float* dtdy, float* out) const {
-  const MipFilter filter{spec_.trilinear, spec_.max_anisotropy};
+  const MipFilter filter{spec_.filter, spec_.max_anisotropy};
   const bool good = with_pyramid(n, [&](const MipMap& map) {
     if (map.channels() == 1) return map.lookup({n, s, t, dsdx, dtdx, dsdy, dtdy}, filter, &out);
     constexpr int kChunk = 128;
@@ -147,7 +147,7 @@ TextureStore::~TextureStore() = default;
 
 const ImageTexture* TextureStore::add(const TextureSpec& spec, SourcePos where) {
   const SourceKey source_key{spec.path, spec.kind, spec.wrap, spec.gamma, spec.scale, spec.flip};
-  const TextureKey key{source_key, spec.trilinear, spec.max_anisotropy};
+  const TextureKey key{source_key, spec.filter, spec.max_anisotropy};
   const std::lock_guard lock(mutex_);
   auto& source = sources_[source_key];
   if (!source) {

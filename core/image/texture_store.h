@@ -28,7 +28,7 @@ struct TextureSpec {
   WrapMode wrap = WrapMode::Repeat;
   std::optional<bool> gamma = false;  ///< Decode sRGB; if it is not said, by default_gamma().
   float scale = 1;
-  bool trilinear = false;    ///< Otherwise EWA.
+  TextureFilter filter = TextureFilter::Ewa;
   float max_anisotropy = 8;  ///< EWA only.
   bool flip = true;          ///< t = 0 is the bottom row (imagemap); lights take false.
 };
@@ -49,7 +49,7 @@ class TextureStore;
 class ImageTexture {
  public:
   /// n filtered RGB values. The derivatives of st along the screen's x and y may all be null: bilinear at the
-  /// finest level. A texture of one channel gives r = g = b. A file that cannot be decoded gives black, and the store
+  /// finest level, unless the filter is Point. A texture of one channel gives r = g = b. A file that cannot be decoded gives black, and the store
   /// keeps the error.
   void lookup(int n, const float* s, const float* t, const float* dsdx, const float* dtdx, const float* dsdy,
               const float* dtdy, float* r, float* g, float* b) const;
@@ -114,7 +114,7 @@ class TextureStore {
  private:
   friend class ImageTexture;
   using SourceKey = std::tuple<std::string, TextureKind, WrapMode, std::optional<bool>, float, bool>;
-  using TextureKey = std::tuple<SourceKey, bool, float>;
+  using TextureKey = std::tuple<SourceKey, TextureFilter, float>;
   struct Memory;
   class Workspace;
 

@@ -1,5 +1,5 @@
-// A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters. The file is
-// decoded when a ray first meets it.
+// A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters, or not filtered. The
+// file is decoded when a ray first meets it.
 #include "core/image/image.h"
 #include "core/image/signature.h"
 #include "core/image/texture_store.h"
@@ -17,6 +17,11 @@ class ImageMap : public Texture2D<T> {
   std::optional<bool> gamma;
   float scale = 1, maxanisotropy = 8;
   bool trilinear = false;
+  Choice filter;  // in the order of TextureFilter
+
+  EffectSet effects() const override {
+    return kind_of_filter() == TextureFilter::Point ? EffectSet{} : Texture2D<T>::effects();
+  }
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
@@ -37,7 +42,7 @@ class ImageMap : public Texture2D<T> {
     spec.wrap = static_cast<WrapMode>(wrap.index);
     spec.gamma = gamma;
     spec.scale = scale;
-    spec.trilinear = trilinear;
+    spec.filter = kind_of_filter();
     spec.max_anisotropy = maxanisotropy;
     image_ = ctx.textures->add(spec, filename.where);
     return Texture2D<T>::prepare(ctx);
@@ -51,6 +56,11 @@ class ImageMap : public Texture2D<T> {
   }
 
  private:
+  TextureFilter kind_of_filter() const {
+    const auto chosen = static_cast<TextureFilter>(filter.index);
+    return trilinear && chosen == TextureFilter::Ewa ? TextureFilter::Trilinear : chosen;
+  }
+
   const ImageTexture* image_ = nullptr;
 };
 
@@ -74,7 +84,11 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
                   "for 8-bit integers and false for all other numbers."),
             param(&I::scale, "scale", 1.0f, Unit::None, "Multiplies every value, after decoding."),
             param(&I::trilinear, "trilinear", false, Unit::None,
-                  "Filters square footprints instead of elliptic ones: faster, but blurred at grazing angles."),
+                  "pbrt-v3's way to ask for the trilinear filter; counts unless \"filter\" is \"point\"."),
+            choice(
+                &I::filter, "filter", {"ewa", "trilinear", "point"},
+                "Averages over elliptic footprints; over square ones, which is faster, but blurred at grazing angles; "
+                "or the nearest texel of the full resolution, without any filtering."),
             param(&I::maxanisotropy, "maxanisotropy", 8.0f, Unit::None,
                   "The most by which an elliptic footprint may be longer than wide; more is sharper and slower.",
                   kPositive)) {}

@@ -70,6 +70,9 @@ struct Reference {
     return (1 - a) * (1 - b) * texel(level, x, y) + a * (1 - b) * texel(level, x + 1, y) +
            (1 - a) * b * texel(level, x, y + 1) + a * b * texel(level, x + 1, y + 1);
   }
+  double nearest(double s, double t) const {
+    return texel(0, static_cast<int>(std::floor(s * levels[0].w)), static_cast<int>(std::floor(t * levels[0].h)));
+  }
   double trilinear(double s, double t, double width) const {
     const double level = last() + std::log2(std::max(width, 1e-8));
     if (level < 0) return bilinear(0, s, t);
@@ -151,6 +154,7 @@ std::vector<float> look(const MipMap& map, const LookupPoints& points, const Mip
   return r;
 }
 
+constexpr TextureFilter kFilters[] = {TextureFilter::Ewa, TextureFilter::Trilinear, TextureFilter::Point};
 const WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::LatLong};
 
 TEST(MipMap, pyramid_shape) {
@@ -191,8 +195,8 @@ TEST(MipMap, filters_follow_the_formulas) {
       const MipMap map(image, {.wrap = wrap, .flip = false});
       const Reference reference(image, wrap);
       for (const float anisotropy : {8.0f, 2.0f}) {
-        const auto ewa = look(map, points.view(), {false, anisotropy});
-        const auto trilinear = look(map, points.view(), {true, anisotropy});
+        const auto ewa = look(map, points.view(), {TextureFilter::Ewa, anisotropy});
+        const auto trilinear = look(map, points.view(), {TextureFilter::Trilinear, anisotropy});
         for (size_t i = 0; i < points.s.size(); ++i) {
           const float s = points.s[i], t = points.t[i];
           ASSERT_NEAR(ewa[i],
@@ -205,6 +209,31 @@ TEST(MipMap, filters_follow_the_formulas) {
         }
       }
     }
+}
+
+TEST(MipMap, points_get_the_texel_they_are_in_whatever_the_footprint) {
+  const Points points(2000);
+  for (const auto& [width, height] : {std::pair{32, 32}, {64, 8}, {1, 16}})
+    for (const WrapMode wrap : kWraps) {
+      const Image image = picture(width, height, 1);
+      const MipMap map(image, {.wrap = wrap, .flip = false});
+      const Reference reference(image, wrap);
+      const auto with = look(map, points.view(), {TextureFilter::Point});
+      const LookupPoints without{static_cast<int>(points.s.size()), points.s.data(), points.t.data()};
+      EXPECT_EQ(look(map, without, {TextureFilter::Point}), with);
+      for (size_t i = 0; i < points.s.size(); ++i) {
+        // Which of two texels a point is in that is within rounding of their border is not told.
+        const double s = points.s[i] * static_cast<double>(width), t = points.t[i] * static_cast<double>(height);
+        if (std::abs(s - std::round(s)) < 1e-4 || std::abs(t - std::round(t)) < 1e-4) continue;
+        ASSERT_EQ(with[i], static_cast<float>(reference.nearest(points.s[i], points.t[i]))) << int(wrap) << ' ' << i;
+      }
+    }
+  // It needs the finest level.
+  const MipMap map(picture(32, 32, 1), {});
+  const float s[] = {0.3f}, wide[] = {1.0f};
+  float out;
+  float* const channels[] = {&out};
+  EXPECT_EQ(map.lookup({1, s, s, wide, wide, wide, wide}, {TextureFilter::Point}, channels), 0);
 }
 
 TEST(MipMap, lookup_width_is_trilinear) {
@@ -223,9 +252,9 @@ TEST(MipMap, a_batch_of_n_is_n_batches_of_one) {
   const Image image = picture(32, 16, 3), halves = picture(32, 16, 3, SampleFormat::Half);
   const MipMapOptions options{.gamma = true};
   for (const MipMap& map : {MipMap(image, options), MipMap(halves, options), MipMap(bytes_of(image), options)})
-    for (const bool trilinear : {false, true}) {
-      const auto all = look(map, points.view(), {trilinear, 8});
-      for (size_t i = 0; i < all.size(); ++i) ASSERT_EQ(look(map, points.view(i, 1), {trilinear, 8})[0], all[i]) << i;
+    for (const TextureFilter kind : kFilters) {
+      const auto all = look(map, points.view(), {kind, 8});
+      for (size_t i = 0; i < all.size(); ++i) ASSERT_EQ(look(map, points.view(i, 1), {kind, 8})[0], all[i]) << i;
     }
 }
 
@@ -262,20 +291,20 @@ TEST(MipMap, building_takes_no_more_than_announced) {
 }
 
 TEST(MipMap, without_fine_levels_coarse_lookups_are_the_same_and_fine_ones_say_so) {
-  // A footprint of 2^-3 in a texture of 2^5 texels is at level 5 - 3 = 2, whatever the filter.
+  // A footprint of 2^-3 in a texture of 2^5 texels is at level 5 - 3 = 2, whatever the filter that has footprints.
   const MipMap whole(bytes_of(picture(32, 32, 3)), {}), rest(whole, 2);
   EXPECT_EQ(whole.first_level(), 0);
   EXPECT_EQ(rest.first_level(), 2);
   EXPECT_EQ(rest.width(), 32);
   EXPECT_EQ(rest.bytes(), whole.bytes() - 32 * 32 * 3 - 16 * 16 * 3 * 2);
   const float s[] = {0.3f}, t[] = {0.6f}, zero[] = {0};
-  for (const bool trilinear : {false, true})
+  for (const TextureFilter kind : {TextureFilter::Ewa, TextureFilter::Trilinear})
     for (const auto& [footprint, level] : {std::pair{0.125f, 2}, {0.3f, 3}, {100.0f, 5}, {0.12f, 1}, {0.001f, 0}}) {
       float a[3], b[3];
       float *const of_whole[] = {&a[0], &a[1], &a[2]}, *const of_rest[] = {&b[0], &b[1], &b[2]};
       const LookupPoints point{1, s, t, &footprint, zero, zero, &footprint};
-      EXPECT_EQ(whole.lookup(point, {trilinear, 8}, of_whole), level);
-      EXPECT_EQ(rest.lookup(point, {trilinear, 8}, of_rest), level);
+      EXPECT_EQ(whole.lookup(point, {kind, 8}, of_whole), level);
+      EXPECT_EQ(rest.lookup(point, {kind, 8}, of_rest), level);
       EXPECT_EQ(whole.lookup_width(1, s, t, &footprint, of_whole), level);
       EXPECT_EQ(rest.lookup_width(1, s, t, &footprint, of_rest), level);
       for (int c = 0; c < 3 && level >= 2; ++c) EXPECT_EQ(a[c], b[c]) << footprint;
@@ -295,8 +324,8 @@ TEST(MipMap, a_constant_texture_is_constant_under_any_footprint) {
   std::fill(image.pixels.begin(), image.pixels.end(), 0.75f);
   const Points points(1000);
   for (const WrapMode wrap : {WrapMode::Repeat, WrapMode::Clamp})
-    for (const bool trilinear : {false, true})
-      for (float v : look(MipMap(image, {.wrap = wrap}), points.view(), {trilinear, 8})) ASSERT_NEAR(v, 0.75f, 1e-6f);
+    for (const TextureFilter kind : kFilters)
+      for (float v : look(MipMap(image, {.wrap = wrap}), points.view(), {kind, 8})) ASSERT_NEAR(v, 0.75f, 1e-6f);
 }
 
 TEST(MipMap, extreme_footprints_give_finite_values) {
@@ -306,7 +335,8 @@ TEST(MipMap, extreme_footprints_give_finite_values) {
   for (const WrapMode wrap : kWraps) {
     const MipMap map(image, {.wrap = wrap});
     for (const MipFilter filter :
-         {MipFilter{false, 8}, MipFilter{true, 8}, MipFilter{false, 1e9f}, MipFilter{false, 0}})
+         {MipFilter{}, MipFilter{TextureFilter::Trilinear, 8}, MipFilter{TextureFilter::Ewa, 1e9f},
+          MipFilter{TextureFilter::Ewa, 0}, MipFilter{TextureFilter::Point, 8}})
       for (float place : {0.5f, -7.3f, 1e6f, -1e15f, 3e38f})
         for (float a : values)
           for (float b : values)

@@ -56,9 +56,12 @@ TEST(TextureStore, textures_that_differ_in_the_filter_share_the_pyramid) {
   TextureStore store;
   TextureSpec spec = spec_of(constant_file("share", 4, 0.5f));
   const ImageTexture* ewa = store.add(spec);
-  spec.trilinear = true;
+  spec.filter = TextureFilter::Trilinear;
   const ImageTexture* trilinear = store.add(spec);
   EXPECT_NE(ewa, trilinear);
+  spec.filter = TextureFilter::Point;
+  EXPECT_NE(store.add(spec), ewa);
+  EXPECT_NE(store.add(spec), trilinear);
   EXPECT_EQ(look(ewa), 0.5f);
   EXPECT_EQ(look(trilinear), 0.5f);
   EXPECT_EQ(store.statistics().decodes, 1);
