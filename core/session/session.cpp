@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/plugin/registry.h"
 #include "core/scene/problems.h"
 #include "parser/lexer.h"
 
@@ -35,16 +34,6 @@ ParsedFile read_scene_file(const std::string& path, const ParseOptions& options)
 
 ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options) {
   return parsed_file([&](Sources& sources) { return parse_text(sources, name, std::move(text), "", options); });
-}
-
-void use_integrator(ParsedFile& file, const std::string& name) {
-  const PluginInfo& info = *find_plugin("integrator", name);
-  for (SceneDescription& world : file.worlds) {
-    Entity& integrator = world.integrator;
-    if (integrator.plugin == name) continue;
-    integrator.plugin = name;
-    std::erase_if(integrator.params, [&](const Parameter& p) { return info.find_param(p.name) == nullptr; });
-  }
 }
 
 PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options) {

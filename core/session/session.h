@@ -31,10 +31,6 @@ ParsedFile read_scene_file(const std::string& path, const ParseOptions& options 
 /// Text that is no file, under the name that messages show; what it includes is looked for in the current folder.
 ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options = {});
 
-/// Renders every world of a file by another integrator than its own, which must be registered. It takes those of the
-/// statement's parameters that it knows.
-void use_integrator(ParsedFile& file, const std::string& name);
-
 /// One world of a file, its statements bound, and what the picture needs of them. Nothing is read yet.
 struct PlannedWorld {
   BoundScene bound;

@@ -48,7 +48,7 @@ void apply(CLI::App& app, CLI::Option& option, const Flag& flag) {
   const FlagRules& rules = flag.rules;
   if (rules.least < rules.most) {
     // The type of the limits is the one that messages and help name.
-    if (std::holds_alternative<int*>(flag.target))
+    if (std::holds_alternative<int*>(flag.target) || std::holds_alternative<std::optional<int>*>(flag.target))
       option.check(CLI::Range(static_cast<int>(rules.least), static_cast<int>(rules.most)));
     else option.check(CLI::Range(rules.least, rules.most));
   }

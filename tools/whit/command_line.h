@@ -14,8 +14,8 @@ namespace whit {
 /// Where a flag's value goes. A bool is a flag without a value; a vector takes several, and all that a positional
 /// argument gets.
 using FlagTarget =
-    std::variant<bool*, int*, uint32_t*, double*, std::optional<double>*, std::string*, std::optional<std::string>*,
-                 std::vector<std::string>*, std::vector<int>*, std::vector<double>*>;
+    std::variant<bool*, int*, uint32_t*, double*, std::optional<int>*, std::optional<double>*, std::string*,
+                 std::optional<std::string>*, std::vector<std::string>*, std::vector<int>*, std::vector<double>*>;
 
 /// What a flag's value must be.
 struct FlagRules {

@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "core/plugin/registry.h"
-
 namespace whit {
 
 void add_effect_flags(CommandLine& command, EffectFlags& flags) {
+  Overrides& o = flags.overrides;
   command.flags.push_back(
-      {"--integrator", &flags.integrator, "Instead of the scene's: whitted, path ... ('whit help integrator')"});
+      {"--integrator", &o.integrator, "Instead of the scene's: whitted, path ... ('whit help integrator')"});
+  command.flags.push_back(
+      {"--sampler", &o.sampler, "Instead of the scene's, with as many samples ('whit help sampler')"});
+  command.flags.push_back({"--maxdepth", &o.max_depth, "The integrator's maxdepth, instead of the scene's"});
+  command.flags.push_back({"--rrthreshold", &o.rr_threshold, "The integrator's rrthreshold, instead of the scene's"});
+  command.flags.push_back({"--texture-filter", &o.texture_filter, "Of all image textures: ewa, trilinear or point"});
   command.flags.push_back(
       {"--without", &flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')"});
   command.flags.push_back(
@@ -23,17 +27,7 @@ std::string usage_problem(const EffectFlags& flags) {
     return fmt::format("{}: there is no effect \"{}\"; {}", flag, unknown,
                        hint.empty() ? fmt::format("there are {}", fmt::join(effect_names(), ", ")) : hint);
   }
-  if (!flags.integrator.empty() && !find_plugin("integrator", flags.integrator)) {
-    const std::vector<std::string> names = plugin_names("integrator");
-    const std::string hint = did_you_mean(flags.integrator, names);
-    return fmt::format("--integrator: there is no integrator \"{}\"; {}", flags.integrator,
-                       hint.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : hint);
-  }
-  return {};
-}
-
-void choose_integrator(const EffectFlags& flags, ParsedFile& file) {
-  if (!flags.integrator.empty()) use_integrator(file, flags.integrator);
+  return usage_problem(flags.overrides);
 }
 
 PlanOptions plan_options(const EffectFlags& flags) {

@@ -167,7 +167,10 @@ int explain_command(const Arguments& args) {
     return kUsage;
   }
   ParsedFile file = read_scene(path);
-  choose_integrator(flags, file);
+  if (const std::string problem = override_worlds(file, flags.overrides); !problem.empty()) {
+    say("whit explain: " + problem);
+    return kUsage;
+  }
   const Sources& sources = *file.sources;
   Diagnostics all = file.said;
   std::vector<PlannedWorld> worlds;

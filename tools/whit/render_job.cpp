@@ -31,12 +31,16 @@ class RenderJob {
         parsed_memory_(resident_memory()) {}
 
   int run() {
-    choose_integrator(settings_.effects, file_);
+    const std::string problem = override_worlds(file_, settings_.effects.overrides);
     times_.parse = file_.elapsed;
     // A file with mistakes is reported whole: also what planning would have said of it.
     reported_whole_ = file_.said.has_errors();
     if (int code = report(reported_whole_ ? all_problems(file_) : file_.said); code != kDone) return code;
     if (file_.worlds.empty()) return kSceneError;
+    if (!problem.empty()) {
+      say("whit: " + problem);
+      return kUsage;
+    }
     stats_.expect(file_.worlds.size());
     int worst = kDone;
     for (const SceneDescription& world : file_.worlds) {

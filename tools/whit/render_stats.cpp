@@ -54,6 +54,7 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
   const PluginInfo &integrator = integrator_in_force(world), &sampler = sampler_in_force(world);
   const Picture& picture = outcome.result.picture;
   const Box2i& window = picture.window;
+  const std::string& filter = asked.effects.overrides.texture_filter;  // None: as each texture says.
   Json::Array effects;
   for_effects(scene.plan.needed, [&](Effect e) { effects.emplace_back(effect_name(e)); });
   return Json::Object{{"scene", path},
@@ -66,6 +67,7 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
                       {"resolution", Json::Array{picture.resolution.x, picture.resolution.y}},
                       {"window", Json::Array{window.min.x, window.min.y, window.max.x, window.max.y}},
                       {"traversal", asked.traversal},
+                      {"texture_filter", filter.empty() ? Json() : Json(filter)},
                       {"texture_memory_mib", asked.texture_memory},
                       {"effects", effects},
                       {"aovs", outcome.output.aovs},
