@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/base/stopwatch.h"
 #include "core/render/film_render.h"
 
 namespace whit {
@@ -245,6 +246,16 @@ class TargetRender {
       claim_ = claim_error(picture, variance, doubts_, request_.confidence);
     }
     out_.claim = claim_, out_.doubts = std::move(doubts_);
+    for (AovPicture::Channel& channel : out_.rendered.result.aovs.channels) {
+      if (channel.name.starts_with("variance.")) mark_doubts(channel.values);
+    }
+  }
+
+  /// The variance of pixels that are doubted is not known.
+  void mark_doubts(std::vector<float>& variance) const {
+    for (size_t p = 0; p < variance.size(); ++p) {
+      if (out_.doubts.pixels[p]) variance[p] = std::numeric_limits<float>::infinity();
+    }
   }
 
   const TargetRequest& request_;
@@ -293,7 +304,9 @@ std::vector<double> allot(std::span<const Allotment> parts, double sum, double m
 TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed) {
   Diagnostics said;
   if (!world.scene->sampler().extends()) said = set_samples(world, kSet, seed);
+  const Stopwatch watch;
   TargetOutcome out = TargetRender(world, options, request).run();
+  out.rendered.elapsed = watch.elapsed();
   out.rendered.said = std::move(said);
   out.rendered.said.append(world.textures->errors());
   return out;

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "tools/whit/command_line.h"
+#include "tools/whit/quantities.h"
 #include "tools/whit/render_stats.h"
 #include "tools/whit/terminal.h"
 
@@ -67,6 +68,14 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        &s.footprint_spp,
        "Samples that share a pixel's texture filtering (default: the scene's count)",
        {.least = 1, .most = 1 << 30}},
+      {"--target-error", &s.target.error, "Render until nRMSE is below: 1%, 0.01"},
+      {"--confidence", &s.target.confidence, "How sure to be of that: 95%"},
+      {"--time-limit", &s.target.time_limit, "Be done, writing included, after: 30s, 2min, 500ms"},
+      {"--max-samples",
+       &s.target.max_samples,
+       "Samples per pixel at most, of --target-error and --time-limit",
+       {.least = 1, .most = 1 << 30}},
+      {"--json", &s.target.json, "What --target-error or --time-limit came to, as JSON: a file, or - for stdout"},
       {"--seed", &s.seed, "Seed of the random numbers"},
       {"--pixel", &s.pixel, "Render one pixel: x,y", {.count = 2}},
       {"--debug-pixel", &s.debug_pixel, "Say how a pixel comes about, without a picture: x,y or x,y,sample"},
@@ -97,6 +106,22 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
   };
 }
 
+/// The same of the flags that say how far to render.
+std::string usage_problem(const RenderSettings& s, const TargetFlags& t) {
+  if (!t.error.empty() && share_of(t.error) == 0)
+    return fmt::format("--target-error: \"{}\" is no error above 0; write 1% or 0.01", t.error);
+  if (!(share_of(t.confidence) > 0 && share_of(t.confidence) < 1))
+    return fmt::format("--confidence: \"{}\" is not between 0 and 100 %; write 95% or 0.95", t.confidence);
+  if (!t.time_limit.empty() && duration_of(t.time_limit) == 0)
+    return fmt::format("--time-limit: \"{}\" is no time above 0; write 30s, 2min, 500ms or 30", t.time_limit);
+  if (!t.json.empty() && !t.any())
+    return "--json tells what --target-error or --time-limit came to; --stats has figures";
+  if (t.any() && s.spp > 0)
+    return "--spp says how many samples to take, --target-error and --time-limit how far to go; --max-samples is a "
+           "limit";
+  return {};
+}
+
 /// A flag whose values make no sense is wrong usage.
 std::string usage_problem(const RenderSettings& s) {
   if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
@@ -112,6 +137,7 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.stats_file.empty() && (!s.debug_pixel.empty() || s.cat || s.toply)) {
     return "--stats FILE.json is of pictures, and none is made";
   }
+  if (std::string problem = usage_problem(s, s.target); !problem.empty()) return problem;
   return usage_problem(s.effects);
 }
 

@@ -10,6 +10,13 @@
 
 namespace whit {
 
+/// How far to render, where that is not a number of samples.
+struct TargetFlags {
+  std::string error, confidence = "95%", time_limit, json;  ///< As given: share_of(), duration_of(); "" for none.
+  int max_samples = 1 << 16;
+  bool any() const { return !error.empty() || !time_limit.empty(); }
+};
+
 struct RenderSettings {
   std::vector<std::string> scenes;
   OutputRequest output;
@@ -17,6 +24,7 @@ struct RenderSettings {
   std::vector<int> pixel;
   std::string debug_pixel;
   EffectFlags effects;
+  TargetFlags target;
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -14,6 +15,7 @@
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/render_report.h"
+#include "tools/whit/render_target.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/version.h"
 
@@ -111,7 +113,7 @@ class RenderJob {
       if (name.empty() || written_.insert(name).second) continue;
       say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
     }
-    const BuiltWorld built =
+    BuiltWorld built =
         build_world(std::move(planned), build_options(), static_cast<size_t>(settings_.texture_memory * 1024 * 1024));
     times_.build = built.elapsed;
     if (int code = report(built.said); code != kDone) return code;
@@ -162,9 +164,34 @@ class RenderJob {
     return o;
   }
 
-  int trace_and_write(const BuiltWorld& built, const OutputPlan& output) {
-    const RenderedWorld rendered = trace(built, output.aovs);
+  int trace_and_write(BuiltWorld& built, const OutputPlan& output) {
+    DisplayServer viewer;
+    const RenderOptions options = render_options(built, output.aovs, viewer);
+    if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
+    const RenderedWorld rendered = trace(built, options);
+    return write_and_say(built, rendered, output, viewer);
+  }
+
+  /// To an accuracy, or until time is up.
+  int approach_and_write(BuiltWorld& built, const RenderOptions& options, const OutputPlan& output,
+                         DisplayServer& viewer) {
+    Diagnostics early;
+    const TargetOutcome outcome =
+        render_to_target(settings_, built, options, started_, [&](const RenderResult& result) {
+          WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
+          early = std::move(written.said);
+          return written.elapsed.wall;
+        });
+    if (int code = report_output(early); code != kDone) return code;
+    if (int code = write_and_say(built, outcome.rendered, output, viewer); code != kDone) return code;
+    return report_target(settings_, outcome,
+                         std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count());
+  }
+
+  int write_and_say(const BuiltWorld& built, const RenderedWorld& rendered, const OutputPlan& output,
+                    DisplayServer& viewer) {
     const RenderResult& result = rendered.result;
+    viewer.update(result.picture.window, result.picture.rgb);
     times_.render = rendered.elapsed;
     if (int code = report(rendered.said); code != kDone) return code;
     const WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
@@ -191,8 +218,8 @@ class RenderJob {
                     n == 1 ? "" : "the first: ", first.message, where));
   }
 
-  /// Renders, with what there is to see of it meanwhile.
-  RenderedWorld trace(const BuiltWorld& built, const std::vector<std::string>& aovs) const {
+  RenderOptions render_options(const BuiltWorld& built, const std::vector<std::string>& aovs,
+                               DisplayServer& viewer) const {
     RenderOptions options;
     options.aovs = {aovs, [this](SourcePos where) { return place(where); }};
     options.threads = settings_.threads;
@@ -208,17 +235,19 @@ class RenderJob {
         options.crop[2 * axis] = (p - 0.5) / n, options.crop[2 * axis + 1] = (p + 0.5) / n;
       }
     }
-    DisplayServer viewer;
     if (!settings_.display_server.empty()) show_in(viewer, size, options);
+    return options;
+  }
+
+  /// Renders as many samples as the scene or --spp says, with what there is to see of it meanwhile.
+  RenderedWorld trace(const BuiltWorld& built, RenderOptions options) const {
     std::optional<Progress> progress;
     if (!settings_.quiet) progress.emplace("rendering");
     options.progress = [&](double share) {
       if (progress) progress->update(share);
       return true;
     };
-    RenderedWorld rendered = render_world(built, options);
-    if (options.tile_done) viewer.update(rendered.result.picture.window, rendered.result.picture.rgb);
-    return rendered;
+    return render_world(built, std::move(options));
   }
 
   /// Previews go to the viewer while it can be reached; the render does not depend on it.
@@ -240,6 +269,7 @@ class RenderJob {
             {"whit:renderSeconds", static_cast<float>(result.seconds)}};
   }
 
+  const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   const RenderSettings& settings_;
   const std::string path_;
   RenderStats& stats_;

@@ -117,6 +117,11 @@ void Progress::update(double share) {
   }
 }
 
+void Progress::update(double share, std::string what) {
+  what_ = std::move(what);
+  update(share);
+}
+
 void Progress::draw(double share, double seconds) const {
   winsize size{};
   const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;

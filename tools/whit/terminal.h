@@ -37,6 +37,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   void update(double share);
+  /// The same under another name.
+  void update(double share, std::string what);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -1,0 +1,43 @@
+#include "tools/whit/quantities.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+namespace whit {
+namespace {
+
+/// A number above 0 before one of the units, times what the unit stands for; else 0.
+double quantity(const std::string& text, std::initializer_list<std::pair<std::string_view, double>> units) {
+  double number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || !(number > 0) || !std::isfinite(number)) return 0;
+  std::string_view unit(rest, static_cast<size_t>(end - rest));
+  while (unit.starts_with(' ')) unit.remove_prefix(1);
+  for (const auto& [name, factor] : units) {
+    if (unit == name) return number * factor;
+  }
+  return 0;
+}
+
+}  // namespace
+
+double duration_of(const std::string& text) {
+  return quantity(text, {{"", 1}, {"s", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}});
+}
+
+double share_of(const std::string& text) { return quantity(text, {{"", 1}, {"%", 0.01}}); }
+
+std::string percent_text(double share) {
+  if (!std::isfinite(share)) return "unknown";
+  const double percent = 100 * share;
+  const int digits = percent <= 0 ? 0 : std::max(0, 1 - static_cast<int>(std::floor(std::log10(percent))) + 1);
+  return fmt::format("{:.{}f} %", percent, std::min(digits, 8));
+}
+
+}  // namespace whit

@@ -1,0 +1,116 @@
+#include "tools/whit/render_target.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "core/image/atomic_file.h"
+#include "tools/whit/json.h"
+#include "tools/whit/quantities.h"
+#include "tools/whit/terminal.h"
+
+namespace whit {
+namespace {
+
+/// "0.94 % [0.81 %, 1.00 %]".
+std::string claim_text(const ErrorClaim& claim) {
+  return fmt::format("{} [{}, {}]", percent_text(claim.value), percent_text(claim.low), percent_text(claim.high));
+}
+
+/// What the claim leaves out.
+std::string doubts_text(const Doubts& doubts) {
+  if (doubts.count == 0) return {};
+  const double share = static_cast<double>(doubts.count) / static_cast<double>(doubts.pixels.size());
+  return fmt::format(
+      "\n{} pixels ({}) between {},{} and {},{} are not trusted and left out of it: beside much brighter ones, or much "
+      "quieter than their surroundings.",
+      doubts.count, percent_text(share), doubts.where.min.x, doubts.where.min.y, doubts.where.max.x,
+      doubts.where.max.y);
+}
+
+const char* end_text(const TargetOutcome& o, bool has_target) {
+  switch (o.end) {
+    case TargetEnd::Met: return "target met";
+    case TargetEnd::Time: return has_target ? "time limit, target not met" : "time limit";
+    case TargetEnd::Samples: return has_target ? "not met with --max-samples" : "--max-samples";
+    case TargetEnd::Stopped: return "stopped";
+  }
+  return "";
+}
+
+/// Numbers that JSON has; null else.
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
+
+Json json_of(const RenderSettings& settings, const TargetOutcome& o, double seconds) {
+  Json::Object j{{"target", settings.target.error.empty() ? Json() : Json(share_of(settings.target.error))},
+                 {"confidence", share_of(settings.target.confidence)},
+                 {"achieved", Json::Object{{"value", number(o.claim.value)},
+                                           {"lower95", number(o.claim.low)},
+                                           {"upper95", number(o.claim.high)}}},
+                 {"met", o.end == TargetEnd::Met},
+                 {"end", end_text(o, !settings.target.error.empty())},
+                 {"samples_mean", o.samples_mean},
+                 {"untrusted_pixels", o.doubts.count},
+                 {"seconds", seconds}};
+  if (o.doubts.count > 0) {
+    const Box2i& w = o.doubts.where;
+    j.emplace_back("untrusted_window", Json::Array{w.min.x, w.min.y, w.max.x, w.max.y});
+  }
+  return j;
+}
+
+}  // namespace
+
+TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world, RenderOptions options,
+                               std::chrono::steady_clock::time_point started,
+                               const std::function<double(const RenderResult&)>& write) {
+  using Clock = std::chrono::steady_clock;
+  const TargetFlags& flags = settings.target;
+  TargetRequest request;
+  request.error = flags.error.empty() ? 0 : share_of(flags.error);
+  request.confidence = share_of(flags.confidence);
+  request.max_samples = static_cast<uint32_t>(flags.max_samples);
+  if (!flags.time_limit.empty()) {
+    const std::chrono::duration<double> limit(duration_of(flags.time_limit));
+    request.deadline = started + std::chrono::duration_cast<Clock::duration>(limit);
+    request.first_picture = write;
+  }
+  std::optional<Progress> progress;
+  if (!settings.quiet) progress.emplace("rendering");
+  request.progress = [&](const TargetState& state) {
+    if (!progress) return true;
+    const std::string error =
+        std::isfinite(state.claim.value) ? fmt::format(", error {}", percent_text(state.claim.value)) : "";
+    progress->update(state.share, "rendering" + error);
+    return true;
+  };
+  return render_to_target(world, std::move(options), request, settings.seed);
+}
+
+int report_target(const RenderSettings& settings, const TargetOutcome& o, double seconds) {
+  const bool has_target = !settings.target.error.empty();
+  const bool black = std::isinf(o.claim.value) && !std::isinf(o.claim.low);
+  if (!settings.quiet) {
+    say(fmt::format("{}: {}, nRMSE, {} sure; {:.1f} samples per pixel.{}", end_text(o, has_target),
+                    black ? "error unknown" : "error " + claim_text(o.claim), settings.target.confidence,
+                    o.samples_mean, doubts_text(o.doubts)));
+  }
+  if (const std::string& file = settings.target.json; !file.empty()) {
+    const std::string text = to_text(json_of(settings, o, seconds)) + "\n";
+    if (file == "-") {
+      fmt::print("{}", text);
+    } else {
+      AtomicFile out(file);
+      out.write_at(text.data(), text.size(), 0);
+      if (const std::string problem = out.commit(); !problem.empty()) {
+        say(fmt::format("whit: cannot write \"{}\": {}", file, problem));
+        return kFileError;
+      }
+    }
+  }
+  const bool reached = o.end == TargetEnd::Met || (!has_target && o.samples_mean >= 1);
+  return reached ? kDone : kLimit;
+}
+
+}  // namespace whit

@@ -1,0 +1,21 @@
+// Rendering to an accuracy or to a time, as `whit render` is asked for it.
+#pragma once
+
+#include <functional>
+
+#include "core/accuracy/target.h"
+#include "tools/whit/render_flags.h"
+
+namespace whit {
+
+/// Renders as far as the flags say; `started` is when the time limit began to run, `write` writes a picture and returns
+/// the seconds that took.
+TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world, RenderOptions options,
+                               std::chrono::steady_clock::time_point started,
+                               const std::function<double(const RenderResult&)>& write);
+
+/// Says what it came to, as text unless quiet and as JSON if asked for. Returns the exit code: kLimit where the target
+/// was not met.
+int report_target(const RenderSettings& settings, const TargetOutcome& outcome, double seconds);
+
+}  // namespace whit
