@@ -91,7 +91,7 @@ class Stats(unittest.TestCase):
         self.assertEqual((figures["invalid_samples"], figures["seed"]), (0, 0))
         self.assertGreater(figures["memory_bytes"], 1 << 20)
         settings = figures["settings"]
-        expected = {"scene": "a.pbrt", "samples_per_pixel": 200, "threads": 2, "integrator": "whitted",
+        expected = {"scene": "a.pbrt", "samples_per_pixel": 200, "footprint_samples": 2, "threads": 2, "integrator": "whitted",
                     "integrator_parameters": {"maxdepth": 3}, "sampler": "random", "resolution": [32, 24],
                     "window": [0, 0, 32, 24], "traversal": "robust", "aovs": [], "outfile": "film-name.exr",
                     "display": "film-name.png", "effects": ["diffuse", "delta-lights", "shadows"]}
@@ -104,6 +104,8 @@ class Stats(unittest.TestCase):
         self.assertEqual((settings["integrator"], settings["traversal"]), ("path", "fast"))
         # x from 0.25 * 32 = 8 to 0.5 * 32 = 16, y from 0.5 * 24 = 12 to 24; ends excluded.
         self.assertEqual((settings["resolution"], settings["window"]), ([32, 24], [8, 12, 16, 24]))
+        self.good("a.pbrt", "--quiet", "--footprint-spp", "5", "--stats=s.json")
+        self.assertEqual(json.loads(self.read("s.json"))["settings"]["footprint_samples"], 5)
         # Without a statement the defaults are in force, and what nobody has is replaced.
         for statement, in_force in (("", "sobol"), ('Sampler "adaptive"', "halton")):
             self.write("b.pbrt", SCENE.replace('Sampler "random" "integer pixelsamples" [2]', statement))

@@ -59,6 +59,7 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
   for_effects(scene.plan.needed, [&](Effect e) { effects.emplace_back(effect_name(e)); });
   return Json::Object{{"scene", path},
                       {"samples_per_pixel", scene.samples_per_pixel},
+                      {"footprint_samples", scene.footprint_samples},
                       {"threads", outcome.result.threads},
                       {"integrator", integrator.name},
                       {"integrator_parameters", parameters(world.integrator, integrator)},
