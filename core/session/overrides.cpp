@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -81,14 +82,18 @@ std::optional<int> declared_samples(const SceneDescription& world) {
   return dynamic_cast<const Sampler&>(*plugin).samples_per_pixel();
 }
 
-/// Tells a sampler's statement how many samples to take: as a number, or as a grid nearest to a square.
+/// Tells a sampler's statement how many samples to take: as a number, or as the grid of so many cells that is nearest to
+/// a square.
 void set_samples(Entity& statement, const PluginInfo& plugin, int samples) {
   if (const ParamSpec* number = plugin.find_param("pixelsamples")) return set_number(statement, *number, samples);
   const ParamSpec *across = plugin.find_param("xsamples"), *down = plugin.find_param("ysamples");
   if (!across || !down) return;
-  const int columns = static_cast<int>(std::sqrt(static_cast<double>(samples)));
+  int columns = static_cast<int>(std::sqrt(static_cast<double>(samples)));
+  while (samples % columns != 0) --columns;
+  // A prime that is more than a side may be.
+  const int rows = static_cast<int>(std::min<double>(samples / columns, down->range.max));
   set_number(statement, *across, columns);
-  set_number(statement, *down, (samples + columns - 1) / columns);
+  set_number(statement, *down, rows);
 }
 
 void use_sampler(SceneDescription& world, const std::string& name) {
@@ -97,9 +102,9 @@ void use_sampler(SceneDescription& world, const std::string& name) {
   const std::optional<int> samples = declared_samples(world);
   if (!samples) return;
   use_plugin(world.sampler, wanted);
-  // As many as it can take.
   const std::unique_ptr<Plugin> plugin = wanted.make();
-  set_samples(world.sampler, wanted, dynamic_cast<Sampler&>(*plugin).set_samples_per_pixel(*samples));
+  const int most = dynamic_cast<Sampler&>(*plugin).set_samples_per_pixel(std::numeric_limits<int>::max());
+  set_samples(world.sampler, wanted, std::min(*samples, most));
 }
 
 void use_integrator(SceneDescription& world, const std::string& name) {

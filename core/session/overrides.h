@@ -23,8 +23,8 @@ std::string usage_problem(const Overrides& overrides);
 
 /// Edits the statements of a world that is not planned yet: of the description the sampler, the integrator and the
 /// textures alone. Another integrator takes those of the statement's parameters that it knows. Another sampler likewise,
-/// and takes as many samples, rounded as it must. The overrides must have no usage_problem(); returns what this world
-/// has no place for, which is wrong usage too: "" when it has.
+/// and takes as many samples as the scene's own, as far as it can. The overrides must have no usage_problem(). Returns ""
+/// or what this world has no place for, which is wrong usage too.
 std::string override_world(SceneDescription& world, const Overrides& overrides);
 
 /// The same for all worlds of a file, up to the first problem.

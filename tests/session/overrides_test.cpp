@@ -103,13 +103,14 @@ TEST(Overrides, AnotherSamplerTakesAsManySamples) {
   };
   for (const Case& c : {Case{"Sampler \"halton\" \"integer pixelsamples\" 12", "random", 12},
                         {"Sampler \"halton\" \"integer pixelsamples\" 12", "stratified", 12},  // 3 x 4
-                        {"Sampler \"halton\" \"integer pixelsamples\" 7", "stratified", 8},    // 2 x 4 holds 7
+                        {"Sampler \"halton\" \"integer pixelsamples\" 7", "stratified", 7},    // 1 x 7
                         {"Sampler \"stratified\" \"integer xsamples\" 3 \"integer ysamples\" 5", "halton", 15},
                         {"Sampler \"stratified\" \"integer xsamples\" 2 \"integer ysamples\" 8", "sobol", 16},
                         {"Sampler \"stratified\" \"integer ysamples\" 2", "random", 8},  // 4 across by default
                         {"Sampler \"lowdiscrepancy\" \"integer pixelsamples\" 32", "maxmindist", 32},
                         {"Sampler \"adaptive\" \"integer pixelsamples\" 9", "random", 9},  // halton stands in
-                        {"", "random", 16},                                                // the default's, not its own
+                        {"Sampler \"random\" \"integer pixelsamples\" 5000000", "stratified", 1 << 22},  // its most
+                        {"", "random", 16},  // the default's, not its own
                         {"Sampler \"random\"", "halton", 4}}) {
     const ParsedFile file = read(square(c.statement, kMirror), with(&Overrides::sampler, c.name));
     EXPECT_EQ(sampler_in_force(file.worlds[0]).name, c.name);
