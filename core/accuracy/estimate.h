@@ -27,9 +27,11 @@ struct ErrorEstimate {
 };
 
 /// The nRMSE expected of one picture, from the squared errors of at least two independent ones against one reference.
-/// The reference's noise is subtracted; what is not above it is reported as 0 or more, with a low of 0.
+/// The reference's noise is subtracted; what is not above it is reported as 0 or more, with a low of 0. `bias` is the
+/// nRMSE that the pictures have in common (estimate_bias()), 0 where they have the reference's own limit: how it falls
+/// together with the reference's noise is the same for all of them, so that their spread does not show it.
 ErrorEstimate estimate_error(std::span<const double> replicate_mse, const ReferenceNoise& reference,
-                             double mean_radiance);
+                             double mean_radiance, double bias = 0);
 
 /// Mean products of errors of replicates: products[r * replicates + s] = mean((x_r - ref) (x_s - ref)), as
 /// error_products() makes it.
@@ -50,9 +52,9 @@ struct ErrorLevel {
   double upper95 = 0;
 };
 
-/// nRMSE = c * samples^-order, fitted to levels of rising samples.
+/// nRMSE = c * samples^-order, fitted to those levels, of rising samples, whose errors are above the reference's noise.
 struct Convergence {
-  std::vector<ErrorLevel> levels;  ///< That it was fitted to: those whose errors are above the reference's noise.
+  std::vector<ErrorLevel> levels;  ///< All of them.
   /// With the interval of the fit and the slopes between neighbours, whichever is further. 1/2 within [0, 1] when there
   /// are less than two levels.
   Estimate order{0.5, 0, 1};
