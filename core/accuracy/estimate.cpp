@@ -137,15 +137,17 @@ Estimate estimate_bias(const ErrorProducts& errors, const ReferenceNoise& refere
 
 namespace {
 
-// Standard deviation of the logarithm of a level's nRMSE.
-double log_deviation(const ErrorLevel& level) {
-  const double width = std::log(level.nrmse.high / level.nrmse.low) / (2 * normal_quantile(kTwoSided));
-  return std::max(width, 1e-4);  // Levels of no spread at all would make weights infinite.
-}
-
 // Fitting a straight line to logarithms needs them.
 bool has_logarithm(const ErrorLevel& level) {
-  return level.samples > 0 && level.nrmse.low > 0 && std::isfinite(level.nrmse.high);
+  return level.samples > 0 && level.nrmse.value > 0 && std::isfinite(level.nrmse.high);
+}
+
+// Standard deviation of the logarithm of a level's nRMSE. Where the reference's noise hides its low end, the high end is
+// what there is.
+double log_deviation(const ErrorLevel& level) {
+  const Estimate& e = level.nrmse;
+  const double width = e.low > 0 ? std::log(e.high / e.low) / 2 : std::log(e.high / e.value);
+  return std::max(width / normal_quantile(kTwoSided), 1e-4);  // Without any spread weights would be infinite.
 }
 
 struct Line {
@@ -190,6 +192,7 @@ Convergence fit_order(std::span<const ErrorLevel> levels) {
   for (size_t i = 1; i < fitted.size(); ++i) {
     const ErrorLevel& a = fitted[i - 1];
     const ErrorLevel& b = fitted[i];
+    if (b.nrmse.low == 0) continue;  // Nothing is seen of that slope but noise.
     const double slope = std::log(a.nrmse.value / b.nrmse.value) / std::log(double(b.samples) / a.samples);
     result.order.low = std::min(result.order.low, slope);
     result.order.high = std::max(result.order.high, slope);
