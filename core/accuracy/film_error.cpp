@@ -100,6 +100,25 @@ void spread_to_tiles(const Picture& picture, const Grid& grid, std::vector<uint8
   });
 }
 
+/// Where most of them are.
+std::vector<Vec2i> densest(const Picture& picture, const Grid& grid, const std::vector<uint8_t>& doubted) {
+  std::vector<std::pair<int, Vec2i>> tiles;
+  each_tile(picture, kTile, [&](int x0, int y0, int x1, int y1) {
+    int n = 0;
+    Vec2i first;
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) {
+        if (doubted[grid.at(x, y)] && n++ == 0) first = picture.window.min + Vec2i(x, y);
+      }
+    }
+    if (n > 0) tiles.emplace_back(n, first);
+  });
+  std::stable_sort(tiles.begin(), tiles.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<Vec2i> out;
+  for (size_t k = 0; k < std::min<size_t>(tiles.size(), 3); ++k) out.push_back(tiles[k].second);
+  return out;
+}
+
 /// What independent parts of the picture add to the sum of variances.
 struct Contributions {
   double sum = 0, squares = 0;
@@ -147,6 +166,7 @@ Doubts find_doubts(const Picture& picture, std::span<const float> variance, int 
       out.where.extendBy(picture.window.min + Vec2i(x, y));
     }
   }
+  out.densest = densest(picture, grid, out.pixels);
   return out;
 }
 

@@ -20,7 +20,8 @@ namespace whit {
 struct Doubts {
   std::vector<uint8_t> pixels;  ///< 1 for each pixel of the window that is doubted, row by row.
   int64_t count = 0;
-  Box2i where;  ///< Around all of them, in pixels of the picture; empty without any.
+  Box2i where;                 ///< Around all of them, in pixels of the picture; empty without any.
+  std::vector<Vec2i> densest;  ///< A doubted pixel of each of the three tiles that have the most of them.
 };
 /// `reach`: pixels that the filter reaches beyond its own. `variance`: three a pixel.
 Doubts find_doubts(const Picture& picture, std::span<const float> variance, int reach);

@@ -16,6 +16,7 @@ using Clock = std::chrono::steady_clock;
 constexpr uint32_t kFirstPass = 64;
 constexpr uint32_t kSet = 16;  ///< Samples that a sampler spreads together which cannot go on.
 constexpr double kWorthDoubling = 1.4;
+constexpr double kReserve = 1.3;  ///< Times as long as it took first may writing take in the end.
 
 double seconds_until(Clock::time_point then) { return std::chrono::duration<double>(then - Clock::now()).count(); }
 
@@ -122,7 +123,10 @@ class TargetRender {
 
   void write_early() {
     if (!request_.deadline || !request_.first_picture || std::exchange(written_, true)) return;
-    const double seconds = request_.first_picture(film_.result());
+    const auto start = Clock::now();
+    const RenderResult result = film_.result();
+    const double resolving = std::chrono::duration<double>(Clock::now() - start).count();
+    const double seconds = kReserve * (resolving + request_.first_picture(result));
     deadline_ -= std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 

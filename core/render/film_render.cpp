@@ -283,6 +283,16 @@ struct FilmRender::Impl {
     return w;
   }
 
+  double samples_per_pixel() const {
+    double samples = 0, pixels = 0;
+    for (size_t u = 0; u < have.size(); ++u) {
+      const Vec2i size = pixels_of(u).max - pixels_of(u).min;
+      const double area = static_cast<double>(size.x) * size.y;  // of a colour nearly half of it
+      samples += area * have[u], pixels += area;
+    }
+    return pixels > 0 ? samples / pixels : 0.0;
+  }
+
   float film_scale() const { return static_cast<float>(scene.film().scale()); }
 
   const Scene& scene;
@@ -386,6 +396,7 @@ RenderResult FilmRender::result() const {
     });
   }
   for (const Worker& w : of.workers) result.statistics.add(w.statistics);
+  result.samples_per_pixel = of.samples_per_pixel();
   result.threads = of.threads();
   result.cpu_seconds = cpu_seconds();
   result.seconds = of.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

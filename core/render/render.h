@@ -30,8 +30,9 @@ struct RenderResult {
   Picture picture;
   AovPicture aovs;  ///< What RenderOptions::aovs asks for, of the same window.
   RenderStatistics statistics;
-  double seconds = 0;      ///< Of the render loop, wall clock.
-  double cpu_seconds = 0;  ///< The same of the processors, added up over threads.
+  double samples_per_pixel = 0;  ///< On average, where units have different numbers.
+  double seconds = 0;            ///< Of the render loop, wall clock.
+  double cpu_seconds = 0;        ///< The same of the processors, added up over threads.
   int threads = 1;
   bool complete = true;  ///< False when progress() stopped it.
 };

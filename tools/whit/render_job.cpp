@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -178,7 +179,7 @@ class RenderJob {
     Diagnostics early;
     const TargetOutcome outcome =
         render_to_target(settings_, built, options, started_, [&](const RenderResult& result) {
-          WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
+          WrittenOutput written = write_output(output, result, metadata(result));
           early = std::move(written.said);
           return written.elapsed.wall;
         });
@@ -194,7 +195,7 @@ class RenderJob {
     viewer.update(result.picture.window, result.picture.rgb);
     times_.render = rendered.elapsed;
     if (int code = report(rendered.said); code != kDone) return code;
-    const WrittenOutput written = write_output(output, result, metadata(*built.scene, result));
+    const WrittenOutput written = write_output(output, result, metadata(result));
     times_.write = written.elapsed;
     if (int code = report_output(written.said); code != kDone) return code;
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
@@ -260,11 +261,11 @@ class RenderJob {
     options.tile_done = [&viewer](const Box2i& window, std::span<const float> rgb) { viewer.update(window, rgb); };
   }
 
-  std::vector<OutputMetadata> metadata(const Scene& scene, const RenderResult& result) const {
+  std::vector<OutputMetadata> metadata(const RenderResult& result) const {
     return {{"Software", fmt::format("whit {}", version())},
             {"whit:command", settings_.command_line},
             {"whit:scene", path_},
-            {"whit:samplesPerPixel", scene.samples_per_pixel},
+            {"whit:samplesPerPixel", static_cast<int>(std::lround(result.samples_per_pixel))},
             {"whit:seed", std::to_string(settings_.seed)},  // Text, since an OpenEXR int ends at half of the seeds.
             {"whit:renderSeconds", static_cast<float>(result.seconds)}};
   }

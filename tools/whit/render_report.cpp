@@ -64,7 +64,7 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
                   count_text(s.refraction_rays), count_text(s.shadow_rays), if_any(s.indirect_rays, "indirect"),
                   if_any(s.probe_rays, "from lobes to lights"), s.rays() / std::max(1e-9, r.seconds) / 1e6));
   const std::string rounding = scene.sampler().rounding();
-  say(fmt::format("{} samples per pixel{}, {} triangles, peak memory {}, invalid samples {}.", scene.samples_per_pixel,
+  say(fmt::format("{:.5g} samples per pixel{}, {} triangles, peak memory {}, invalid samples {}.", r.samples_per_pixel,
                   rounding.empty() ? "" : " (" + rounding + ")",
                   count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
                   s.invalid_samples));

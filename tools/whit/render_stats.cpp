@@ -58,7 +58,7 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
   Json::Array effects;
   for_effects(scene.plan.needed, [&](Effect e) { effects.emplace_back(effect_name(e)); });
   return Json::Object{{"scene", path},
-                      {"samples_per_pixel", scene.samples_per_pixel},
+                      {"samples_per_pixel", outcome.result.samples_per_pixel},
                       {"footprint_samples", scene.footprint_samples},
                       {"threads", outcome.result.threads},
                       {"integrator", integrator.name},

@@ -22,11 +22,12 @@ std::string claim_text(const ErrorClaim& claim) {
 std::string doubts_text(const Doubts& doubts) {
   if (doubts.count == 0) return {};
   const double share = static_cast<double>(doubts.count) / static_cast<double>(doubts.pixels.size());
+  std::string where;
+  for (const Vec2i& p : doubts.densest) where += fmt::format("{}{},{}", where.empty() ? "" : "; ", p.x, p.y);
   return fmt::format(
-      "\n{} pixels ({}) between {},{} and {},{} are not trusted and left out of it: beside much brighter ones, or much "
-      "quieter than their surroundings.",
-      doubts.count, percent_text(share), doubts.where.min.x, doubts.where.min.y, doubts.where.max.x,
-      doubts.where.max.y);
+      "\n{} pixels ({}) are not trusted, beside much brighter ones or much quieter than their surroundings, and left "
+      "out of it: most around {}.",
+      doubts.count, percent_text(share), where);
 }
 
 const char* end_text(const TargetOutcome& o, bool has_target) {
@@ -55,7 +56,7 @@ Json json_of(const RenderSettings& settings, const TargetOutcome& o, double seco
                  {"seconds", seconds}};
   if (o.doubts.count > 0) {
     const Box2i& w = o.doubts.where;
-    j.emplace_back("untrusted_window", Json::Array{w.min.x, w.min.y, w.max.x, w.max.y});
+    j.emplace_back("untrusted_window", Json::Array{w.min.x, w.min.y, w.max.x + 1, w.max.y + 1});
   }
   return j;
 }
