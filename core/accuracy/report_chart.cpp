@@ -200,7 +200,7 @@ class Chart {
         html_text(fmt::format("{} samples, extrapolated: {} in about {}", 4 * int64_t{last.samples},
                               percent_interval(beyond_->error.nrmse), seconds_text(beyond_->seconds))));
     const std::string what = std::to_string(4 * int64_t{last.samples});
-    const double end = x(beyond_->seconds), at = y(beyond_->error.nrmse.value) - 8;
+    const double end = x(beyond_->seconds), at = y(beyond_->error.nrmse.value) + 18;
     text(end, at, "note end", what);
     taken_.push_back({end - 7.0 * static_cast<double>(what.size()), at - 12, end, at + 2});
   }
@@ -232,8 +232,15 @@ class Chart {
           if (s->pareto == pareto) label(curve, *s);
   }
 
+  // What tells it from the rest of its curve, and at the curve's start what it is a curve of.
+  static std::string label_of(const Curve& curve, const CostSetting& s) {
+    if (curve.knob == "samples") return std::to_string(s.samples);
+    if (curve.value.empty()) return one_line(s.value);
+    return curve.points.front() == &s ? one_line(fmt::format("{} {}", s.value, s.samples)) : std::to_string(s.samples);
+  }
+
   void label(const Curve& curve, const CostSetting& s) {
-    const std::string what = s.knob == "samples" ? std::to_string(s.samples) : one_line(s.value);
+    const std::string what = label_of(curve, s);
     const double cx = x(s.cpu_seconds.value), cy = y(s.nrmse.value), w = 6.4 * static_cast<double>(what.size()) + 2;
     const Box places[] = {{cx + 8, cy - 15, cx + 8 + w, cy - 1},
                           {cx - 8 - w, cy + 2, cx - 8, cy + 16},

@@ -110,7 +110,7 @@ std::string settings(const CostReport& report) {
       "scroll\"><table>\n<thead><tr><th class=\"left\">setting</th><th>CPU "
       "time</th><th>wall</th><th>nRMSE</th><th>below, "
       "95&nbsp;% sure</th>";
-  if (with_bias) out += "<th>of it bias, which samples do not take away</th>";
+  if (with_bias) out += "<th>bias, at any number of samples</th>";
   out +=
       "<th>pixels off by more than 2/255</th><th>95&nbsp;% are off by less than</th><th>relMSE</th><th>FLIP</th></tr>"
       "</thead>\n<tbody>\n";

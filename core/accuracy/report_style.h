@@ -8,7 +8,7 @@ inline constexpr const char* kReportStyle = R"css(
 --accent:#0b6e99;--warn:#a85a00;--warn-paper:#fdf3e3;
 --k0:#0b6e99;--k1:#c2410c;--k2:#15803d;--k3:#9333ea;--k4:#b45309;--k5:#be185d;--k6:#4d7c0f}
 @media (prefers-color-scheme:dark){:root{--paper:#161514;--card:#1f1e1c;--ink:#ece8e1;--soft:#a09a90;--rule:#383530;
---code:#2a2825;--grey:#67625a;--accent:#5bb8e0;--warn:#f0b35a;--warn-paper:#33291a;
+--code:#2a2825;--grey:#837d73;--accent:#5bb8e0;--warn:#f0b35a;--warn-paper:#33291a;
 --k0:#5bb8e0;--k1:#fb8a5c;--k2:#5fcf88;--k3:#c79bff;--k4:#e8b04a;--k5:#f47fb2;--k6:#a8cf5e}}
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.5 system-ui,-apple-system,"Segoe UI",Roboto,sans-serif;
@@ -56,7 +56,7 @@ user-select:all}
 .legend svg{width:16px;height:16px}
 .scroll{overflow-x:auto;padding:6px 0}
 table{border-collapse:collapse;width:100%;font-size:13.5px}
-th{font-weight:550;color:var(--soft);text-align:right;vertical-align:bottom;line-height:1.3;padding:8px 8px;border-bottom:1px solid var(--rule)}
+th{font-weight:550;color:var(--soft);text-align:right;vertical-align:bottom;line-height:1.3;min-width:62px;padding:8px 8px;border-bottom:1px solid var(--rule)}
 td{text-align:right;padding:6px 8px;border-bottom:1px solid var(--rule);white-space:nowrap}
 tr:last-child td{border-bottom:0}
 th.left,td.left{text-align:left}
