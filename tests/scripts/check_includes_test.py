@@ -98,7 +98,7 @@ class CheckIncludes(unittest.TestCase):
                     self.rejected(folder + "/a.cpp", include, "only %s includes" % home)
         self.rejected("core/render/a.cpp", "<nlohmann/json.hpp>", "core/render may include")
         self.rejected("core/render/a.cpp", "<CLI/CLI.hpp>", "core/render may include")
-        self.rejected("core/render/a.cpp", "<boost/array.hpp>", "a new library needs a rule")
+        self.rejected("core/render/a.cpp", "<Eigen/Core>", "a new library needs a rule")
 
     def test_plugins(self):
         self.rejected("plugins/lights/a.cpp", '"plugins/lights/lamp.h"', "plugins do not know each other")
