@@ -61,6 +61,7 @@ std::string answers(const CostReport& report) {
 std::string order_html(const CostReport& report) {
   const std::string text = order_text(report);
   const size_t power = text.find('^'), end = text.find(' ', power);
+  if (power == std::string::npos) return html_text(text);
   return html_text(text.substr(0, power)) + "<sup>" + html_text(text.substr(power + 1, end - power - 1)) + "</sup>" +
          html_text(text.substr(end));
 }

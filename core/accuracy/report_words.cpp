@@ -78,13 +78,6 @@ std::string setting_name(const CostSetting& setting) {
   return one_line(fmt::format("{} {}, {} samples", setting.knob, setting.value, setting.samples));
 }
 
-std::string one_line(std::string_view text) {
-  std::string out(text);
-  for (char& c : out)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  return out;
-}
-
 namespace {
 
 // How many bytes the UTF-8 character at the start of the text has; 0 where there is none.
@@ -111,18 +104,31 @@ std::string_view escaped(std::string_view character) {
   return character;
 }
 
-}  // namespace
-
-std::string html_text(std::string_view text) {
+// The text, each character of it as `of` says.
+template <class Of>
+std::string each_character(std::string_view text, const Of& of) {
   std::string out;
-  const std::string line = one_line(text);
-  for (std::string_view rest = line; !rest.empty();) {
+  for (std::string_view rest = text; !rest.empty();) {
     const size_t length = character_length(rest);
-    out += length == 0 ? std::string_view("?") : escaped(rest.substr(0, length));
+    out += length == 0 ? std::string_view("?") : of(rest.substr(0, length));
     rest.remove_prefix(std::max<size_t>(1, length));
   }
   return out;
 }
+
+// Below a space, "delete", and U+0080 to U+009F, which terminals obey too.
+bool is_control(std::string_view character) {
+  const auto byte = [&](size_t i) { return static_cast<unsigned char>(character[i]); };
+  return byte(0) < 0x20 || byte(0) == 0x7f || (byte(0) == 0xc2 && byte(1) < 0xa0);
+}
+
+}  // namespace
+
+std::string one_line(std::string_view text) {
+  return each_character(text, [](std::string_view c) { return is_control(c) ? std::string_view(" ") : c; });
+}
+
+std::string html_text(std::string_view text) { return each_character(one_line(text), escaped); }
 
 std::string reference_text(const CostReport& report) {
   return fmt::format(
@@ -132,6 +138,7 @@ std::string reference_text(const CostReport& report) {
 }
 
 std::string order_text(const CostReport& report) {
+  if (!std::isfinite(report.order.value)) return "How nRMSE falls with the samples is not known";
   return fmt::format("nRMSE falls as samples^-{} [{}, {}]", three_digits(report.order.value),
                      three_digits(report.order.low), three_digits(report.order.high));
 }

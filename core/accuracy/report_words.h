@@ -35,16 +35,16 @@ std::string effect_seconds(const CostEffect& effect);
 /// "64 samples", "sampler random, 64 samples".
 std::string setting_name(const CostSetting& setting);
 
-/// Text of the scene for a terminal or a line: control characters become spaces.
+/// Text of the scene for a terminal: control characters become spaces, bytes that are not UTF-8 "?".
 std::string one_line(std::string_view text);
 
-/// Text of the scene between HTML tags, or in an attribute between double quotes. Bytes that are not UTF-8 become "?".
+/// The same between HTML tags, or in an attribute between double quotes.
 std::string html_text(std::string_view text);
 
 /// The first line of every form: what the reference is.
 std::string reference_text(const CostReport& report);
 
-/// "nRMSE falls as samples^-0.620 [0.580, 0.660]".
+/// "nRMSE falls as samples^-0.620 [0.580, 0.660]", or that it is not known.
 std::string order_text(const CostReport& report);
 
 /// "0.120 s + 31.2 ms a sample".

@@ -244,7 +244,8 @@ TEST(CostText, SaysWhatMatters) {
   for (const char* what : {"not reality", "samples^-0.600 [", "not resolved [-30.0, 72.0] ms", "need not add up",
                            "(extrapolated)", "Not known:", "61 pixels", "--spp 512"})
     EXPECT_NE(text.find(what), std::string::npos) << what;
-  EXPECT_NE(cost_text(odd(), false, 100).find("Ended early"), std::string::npos);
+  for (const char* what : {"Ended early", "How nRMSE falls with the samples is not known"})
+    EXPECT_NE(cost_text(odd(), false, 100).find(what), std::string::npos) << what;
 }
 
 // The page without the bytes of its pictures, which may spell anything.
@@ -296,6 +297,7 @@ TEST(ReportWords, HaveThreeDigits) {
   EXPECT_EQ(seconds_interval({0.0312, 0.03, 0.2}), "31.2 ms [30.0, 200]");
   EXPECT_EQ(seconds_text(14), "14.0 s");
   EXPECT_EQ(seconds_text(750), "12.5 min");
+  EXPECT_EQ(one_line("a\n\x1b[31m\xc2\x9b\xff\xe2\x82\xac"), "a  [31m ?€");
   EXPECT_EQ(html_text("<\xff\xe2\x82\xac\xc3\">"), "&lt;?€?&quot;&gt;");
 }
 
