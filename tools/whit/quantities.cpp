@@ -33,7 +33,7 @@ double duration_of(const std::string& text) {
 
 double share_of(const std::string& text) { return quantity(text, {{"", 1}, {"%", 0.01}}); }
 
-std::string percent_text(double share) {
+std::string share_text(double share) {
   if (!std::isfinite(share)) return "unknown";
   const double percent = 100 * share;
   const int digits = percent <= 0 ? 0 : std::max(0, 1 - static_cast<int>(std::floor(std::log10(percent))) + 1);

@@ -12,6 +12,6 @@ double duration_of(const std::string& text);
 double share_of(const std::string& text);
 
 /// "0.94 %", with as many digits as say something.
-std::string percent_text(double share);
+std::string share_text(double share);
 
 }  // namespace whit

@@ -15,7 +15,7 @@ namespace {
 
 /// "0.94 % [0.81 %, 1.00 %]".
 std::string claim_text(const ErrorClaim& claim) {
-  return fmt::format("{} [{}, {}]", percent_text(claim.value), percent_text(claim.low), percent_text(claim.high));
+  return fmt::format("{} [{}, {}]", share_text(claim.value), share_text(claim.low), share_text(claim.high));
 }
 
 /// What the claim leaves out.
@@ -27,7 +27,7 @@ std::string doubts_text(const Doubts& doubts) {
   return fmt::format(
       "\n{} pixels ({}) are not trusted, beside much brighter ones or much quieter than their surroundings, and left "
       "out of it: most around {}.",
-      doubts.count, percent_text(share), where);
+      doubts.count, share_text(share), where);
 }
 
 const char* end_text(const TargetOutcome& o, bool has_target) {
@@ -82,7 +82,7 @@ TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world
   request.progress = [&](const TargetState& state) {
     if (!progress) return true;
     const std::string error =
-        std::isfinite(state.claim.value) ? fmt::format(", error {}", percent_text(state.claim.value)) : "";
+        std::isfinite(state.claim.value) ? fmt::format(", error {}", share_text(state.claim.value)) : "";
     progress->update(state.share, "rendering" + error);
     return true;
   };
