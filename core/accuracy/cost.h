@@ -4,6 +4,7 @@
 // the mean radiance of the picture. Error is what remains against the same integrator at its best, not against reality.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -29,15 +30,29 @@ struct CostImage {
 };
 
 struct CostRequest {
-  double seconds = 60;        ///< Wall clock, for all of it, counted from `started`.
-  bool quick = false;         ///< Samples alone: no knobs, no effects.
-  bool all_samplers = false;  ///< Every sampler, not only the scene's, sobol and random.
-  int threads = 0;            ///< 0: one per core.
-  uint32_t seed = 0;          ///< Of the first replicate; references are from seeds far from it.
-  std::string scene_path;     ///< As the commands name it.
+  double seconds = 60;           ///< Wall clock, for all of it, counted from `started`.
+  bool quick = false;            ///< Samples alone: no knobs, no effects.
+  bool all_samplers = false;     ///< Every sampler, not only the scene's, sobol and random.
+  int threads = 0;               ///< 0: one per core.
+  uint32_t seed = 0;             ///< Of the first replicate; references are from seeds far from it.
+  std::string scene_path;        ///< As the commands name it.
+  std::string program = "whit";  ///< Likewise.
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  Elapsed before;  ///< What starting the program and parsing took, as they take with every command.
   /// Called now and then with the share done in [0,1] and what is being done; returning false ends the study, which
   /// then reports what it has.
   std::function<bool(double, const std::string&)> progress;
+};
+
+/// How a setting differs from the scene as it stands, by pictures in pairs of the same seeds and samples.
+struct CostChange {
+  std::string from;               ///< The scene's value of the knob.
+  Estimate seconds;               ///< CPU seconds of rendering that it takes more than the scene's.
+  bool resolved = false;          ///< The interval leaves out zero.
+  double share = 0;               ///< The same as a share of the scene's: -0.3 saves 30 %.
+  std::optional<Estimate> noise;  ///< Its nRMSE over the scene's at the same samples, where both have one limit.
+  double mean_change = 0;         ///< Of the mean radiance, relative.
+  double pixels_changed = 0;  ///< Share of the pixels whose luminance it changes by more than 1 % (beyond the noise).
 };
 
 /// One way to render the scene, measured.
@@ -52,23 +67,26 @@ struct CostSetting {
   double upper95 = 0;  ///< Of nRMSE, one-sided.
   /// nRMSE of what more samples do not take away, where the setting has another limit than the scene as it stands.
   std::optional<Estimate> bias;
-  double relmse = 0;       ///< mean((x - ref)^2 / (ref^2 + e)), e = (0.1 mean radiance)^2; no promise.
-  double flip = 0;         ///< Mean LDR-FLIP of the display pictures, at 67 pixels per degree; no promise.
-  double share_2_255 = 0;  ///< Of the pixels, off by more than 2/255 in the display picture; no promise.
-  double quantile95 = 0;   ///< Of |x - ref| / mean radiance over pixels and channels; no promise.
-  bool pareto = false;     ///< Nothing measured is both faster and nearer.
-  CostImage crop;          ///< The same place of every setting's first replicate.
+  std::optional<CostChange> change;  ///< Against the scene as it stands, with the same samples; not of "samples".
+  double relmse = 0;                 ///< mean((x - ref)^2 / (ref^2 + e)), e = (0.1 mean radiance)^2; no promise.
+  double flip = 0;                   ///< Mean LDR-FLIP of the display pictures, at 67 pixels per degree; no promise.
+  double share_2_255 = 0;            ///< Of the pixels, off by more than 2/255 in the display picture; no promise.
+  double quantile95 = 0;             ///< Of |x - ref| / mean radiance over pixels and channels; no promise.
+  bool pareto = false;               ///< Nothing measured is both faster and nearer.
+  CostImage crop;                    ///< The same place of every setting's first replicate.
 };
 
 /// The scene without one of its effects, paired with the scene as it is.
 struct CostEffect {
   std::string name;  ///< As --without takes it.
   std::string command;
-  Estimate seconds;           ///< CPU seconds that the effect takes, at `samples` of the study's effects.
+  int samples = 0;            ///< Per pixel, of the figures below.
+  int replicates = 0;         ///< Pairs of pictures.
+  Estimate seconds;           ///< CPU seconds of rendering that the effect takes.
   bool resolved = false;      ///< The interval leaves out zero.
-  double share = 0;           ///< Of the scene's CPU seconds.
+  double share = 0;           ///< Of the scene's CPU seconds of rendering.
   Estimate wall_seconds;      ///< Beside it.
-  double mean_change = 0;     ///< Of the mean radiance by the effect, signed and relative: 0.1 is brighter by 10 %.
+  double mean_change = 0;     ///< What the effect adds to the mean radiance, as a share of it: -0.1 takes 10 % away.
   double pixels_changed = 0;  ///< Share of the pixels whose luminance it changes by more than 1 % (beyond the noise).
   CostImage where;            ///< Thumbnail: |difference| / mean radiance.
 };

@@ -13,16 +13,29 @@ Json interval(const char* middle, const Estimate& e) { return {{middle, e.value}
 
 Json range(const Estimate& e) { return {{"low", e.low}, {"high", e.high}}; }
 
+Json change_json(const CostChange& c) {
+  Json seconds = interval("value", c.seconds);
+  seconds["resolved"] = c.resolved;
+  return {{"from", c.from},
+          {"seconds", seconds},
+          {"share", c.share},
+          {"noise", c.noise ? interval("value", *c.noise) : Json()},
+          {"mean_change", c.mean_change},
+          {"pixels_changed", c.pixels_changed}};
+}
+
 Json setting_json(const CostSetting& s) {
   Json nrmse = interval("value", s.nrmse);
   nrmse["upper95"] = s.upper95;
   return {{"knob", s.knob},
           {"value", s.value},
+          {"samples", s.samples},
           {"command", s.command},
           {"seconds", interval("median", s.seconds)},
           {"cpu_seconds", interval("median", s.cpu_seconds)},
           {"nrmse", nrmse},
           {"bias", s.bias ? interval("value", *s.bias) : Json()},
+          {"change", s.change ? change_json(*s.change) : Json()},
           {"relmse", s.relmse},
           {"flip", s.flip},
           {"share_2_255", s.share_2_255},
@@ -32,7 +45,14 @@ Json setting_json(const CostSetting& s) {
 Json effect_json(const CostEffect& e) {
   Json seconds = interval("value", e.seconds);
   seconds["resolved"] = e.resolved;
-  return {{"name", e.name}, {"seconds", seconds}, {"mean_change", e.mean_change}, {"pixels_changed", e.pixels_changed}};
+  return {{"name", e.name},
+          {"command", e.command},
+          {"samples", e.samples},
+          {"seconds", seconds},
+          {"wall_seconds", interval("value", e.wall_seconds)},
+          {"share", e.share},
+          {"mean_change", e.mean_change},
+          {"pixels_changed", e.pixels_changed}};
 }
 
 Json answer_json(const CostAnswer& a) {

@@ -179,12 +179,13 @@ TEST(CostJson, HasItsKeys) {
   EXPECT_EQ(keys(json["reference"]), (Keys{"samples", "seconds", "noise"}));
   EXPECT_EQ(keys(json["order"]), (Keys{"value", "low", "high"}));
   EXPECT_EQ(keys(json["time"]), (Keys{"fixed", "per_sample"}));
-  EXPECT_EQ(keys(json["settings"][0]), (Keys{"knob", "value", "command", "seconds", "cpu_seconds", "nrmse", "bias",
-                                             "relmse", "flip", "share_2_255", "pareto"}));
+  EXPECT_EQ(keys(json["settings"][0]), (Keys{"knob", "value", "samples", "command", "seconds", "cpu_seconds", "nrmse",
+                                             "bias", "change", "relmse", "flip", "share_2_255", "pareto"}));
   EXPECT_EQ(keys(json["settings"][0]["seconds"]), (Keys{"median", "low", "high"}));
   EXPECT_EQ(keys(json["settings"][0]["cpu_seconds"]), (Keys{"median", "low", "high"}));
   EXPECT_EQ(keys(json["settings"][0]["nrmse"]), (Keys{"value", "low", "high", "upper95"}));
-  EXPECT_EQ(keys(json["effects"][0]), (Keys{"name", "seconds", "mean_change", "pixels_changed"}));
+  EXPECT_EQ(keys(json["effects"][0]),
+            (Keys{"name", "command", "samples", "seconds", "wall_seconds", "share", "mean_change", "pixels_changed"}));
   EXPECT_EQ(keys(json["effects"][0]["seconds"]), (Keys{"value", "low", "high", "resolved"}));
   EXPECT_EQ(keys(json["answers"][0]), (Keys{"text", "command", "predicted", "extrapolated"}));
   EXPECT_EQ(json["answers"][0]["predicted"]["cpu_seconds"]["high"], 17);

@@ -1,0 +1,71 @@
+// A world of the file, as it stands or with a knob turned, ready to be rendered with any seed and number of samples.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/accuracy/cost_clock.h"
+#include "core/render/film_render.h"
+#include "core/session/output.h"
+#include "core/session/overrides.h"
+
+namespace whit {
+
+/// How a world differs from what the file says. The flags are those of `whit render` that do the same.
+struct CostVariant {
+  std::string knob, value;  ///< As CostSetting has them; the name of an effect in `value` where an effect is left out.
+  std::string flags;        ///< "--sampler random".
+  std::optional<Overrides> overrides{};
+  EffectSet off{};
+  bool robust = true;
+};
+
+/// Names a place in the scene, for AOVs that stand for statements.
+StatementPlace statement_place(const Sources& sources);
+
+struct CostWorld {
+  std::unique_ptr<SceneDescription> own;  ///< A changed copy of the file's world; null where nothing is changed.
+  const SceneDescription* description = nullptr;  ///< What the rest refers to.
+  BuiltWorld built;
+  OutputPlan output;  ///< Of the picture as the plain command writes it, into a folder that is gone.
+  RenderOptions options;
+  Diagnostics said;
+  Elapsed fixed;        ///< Of a render with any number of samples: planning, building, first looks, writing.
+  Elapsed per_sample;   ///< For all pixels, by a render of one.
+  int own_samples = 0;  ///< Per pixel, that the scene asks for.
+  bool usable = false;
+  bool too_slow = false;  ///< Not even one sample came to its end in time.
+
+  const Scene& scene() const { return *built.scene; }
+};
+
+/// Plans, builds and renders one sample twice: what the first takes more is what is done at first sight.
+CostWorld open_world(const ParsedFile& file, size_t world, const CostVariant& variant, const CostRequest& request,
+                     CostClock& clock);
+
+/// Several pictures of one world, each of a seed of its own, that grow.
+class SeededFilms {
+ public:
+  SeededFilms(CostWorld& world, uint32_t first_seed, int count);
+  int size() const { return static_cast<int>(films_.size()); }
+
+  /// Gives a film so many samples per pixel, as the sampler rounds them: by adding to it where the sampler goes on, else
+  /// anew. False when it was stopped; the film is then of no use.
+  bool grow(int film, int samples);
+  Picture picture(int film) const { return films_[static_cast<size_t>(film)].render->picture(); }
+  /// What its samples took.
+  Elapsed spent(int film) const;
+
+ private:
+  struct Film {
+    uint32_t seed;
+    std::unique_ptr<FilmRender> render;
+    double wall = 0;
+  };
+  CostWorld& world_;
+  std::vector<Film> films_;
+};
+
+}  // namespace whit
