@@ -165,7 +165,7 @@ class Usage(Case):
         self.fails(2, 'did you mean "matte"', "help", "material", "mate")
         self.fails(2, 'did you mean "material"', "help", "materiel")
         self.assertRegex(self.good("--version"), r"^whit \d+\.\d+")
-        for command in ("render", "check", "fmt", "explain", "diff", "bench"):
+        for command in ("render", "check", "fmt", "explain", "cost", "diff", "bench"):
             self.assertIn("--help", self.good(command, "--help"))
 
 
