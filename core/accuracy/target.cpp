@@ -56,7 +56,7 @@ class TargetRender {
   // ---- Passes ----
 
   RenderOptions with_progress(RenderOptions options, const BuiltWorld& world) {
-    options.blocks = options.adaptive = true;
+    options.blocks = true, options.adaptive = request_.error > 0;
     options.progress = [this, &world](double share) {
       if (!world.keep_going && world.textures->failed()) return false;
       if (Clock::now() >= deadline_) return false;
@@ -85,14 +85,19 @@ class TargetRender {
     return sum;
   }
 
+  /// Samples that a pass adds, over all pixels.
+  double added(const std::vector<uint32_t>& want) const {
+    double sum = 0;
+    for (size_t u = 0; u < want.size(); ++u) sum += areas_[u] * (want[u] - std::min(want[u], units_[u].samples));
+    return sum;
+  }
+
   /// Seconds that so many more samples take.
   double seconds_for(double more) const { return more * rate_; }
 
   /// Extends the film; false when it was stopped. `want` by unit.
   bool pass(const std::vector<uint32_t>& want) {
-    pass_samples_ = 0, pass_share_ = 0;
-    for (size_t u = 0; u < want.size(); ++u)
-      pass_samples_ += areas_[u] * (want[u] - std::min(want[u], units_[u].samples));
+    pass_samples_ = added(want), pass_share_ = 0;
     const auto start = Clock::now();
     const bool complete = film_.extend(want);
     units_ = film_.units();
@@ -149,12 +154,13 @@ class TargetRender {
     while (true) {
       if (look()) return TargetEnd::Met;
       if (!tell()) return TargetEnd::Stopped;
-      std::vector<uint32_t> want = next();
-      double more = 0;
-      for (size_t u = 0; u < want.size(); ++u) more += areas_[u] * (want[u] - units_[u].samples);
-      if (more == 0) return TargetEnd::Samples;
-      if (seconds_for(more) > seconds_until(deadline_)) return TargetEnd::Time;
+      const std::vector<Allotment> parts = allotments();
+      std::vector<uint32_t> want = next(parts);
+      if (added(want) == 0) return TargetEnd::Samples;
+      const bool last = seconds_for(added(want)) > seconds_until(deadline_);
+      if (last) want = what_fits(parts, want);
       if (!pass(want)) return stopped();
+      if (last) return look() ? TargetEnd::Met : TargetEnd::Time;
     }
   }
 
@@ -202,8 +208,7 @@ class TargetRender {
 
   /// The numbers of samples to have after the next pass: twice as many where the target takes that, or, where the
   /// estimate is below it and not yet sure, in the eighth of the picture that needs it most.
-  std::vector<uint32_t> next() {
-    const std::vector<Allotment> parts = allotments();
+  std::vector<uint32_t> next(const std::vector<Allotment>& parts) {
     const double mean = mean_of(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
     const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
     const double aim = 0.97 * sure * request_.error * mean;
@@ -220,7 +225,8 @@ class TargetRender {
     return any ? want : most_needed(parts);
   }
 
-  std::vector<uint32_t> most_needed(const std::vector<Allotment>& parts) const {
+  /// Units by how much of the variance each further sample takes away, the most first.
+  static std::vector<size_t> by_need(const std::vector<Allotment>& parts) {
     std::vector<size_t> order(parts.size());
     std::iota(order.begin(), order.end(), size_t{0});
     const auto need = [&](size_t u) {
@@ -228,13 +234,30 @@ class TargetRender {
       return parts[u].area > 0 ? parts[u].variance / (parts[u].area * n * n) : 0.0;
     };
     std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return need(a) > need(b); });
+    return order;
+  }
+
+  std::vector<uint32_t> most_needed(const std::vector<Allotment>& parts) const {
     std::vector<uint32_t> want;
     for (const Allotment& p : parts) want.push_back(p.samples);
     double area = 0;
-    for (const size_t u : order) {
-      if (area >= pixels_ / 8 || need(u) == 0) break;
+    for (const size_t u : by_need(parts)) {
+      if (area >= pixels_ / 8 || parts[u].variance == 0) break;
       if (2 * want[u] > request_.max_samples) continue;
       want[u] *= 2, area += parts[u].area;
+    }
+    return want;
+  }
+
+  /// As much of a pass as there is time for, what is needed most first.
+  std::vector<uint32_t> what_fits(const std::vector<Allotment>& parts, const std::vector<uint32_t>& wanted) const {
+    std::vector<uint32_t> want;
+    for (const Allotment& p : parts) want.push_back(p.samples);
+    double left = seconds_until(deadline_) / std::max(rate_, 1e-30);
+    for (const size_t u : by_need(parts)) {
+      left -= areas_[u] * (wanted[u] - parts[u].samples);
+      if (left < 0) break;
+      want[u] = wanted[u];
     }
     return want;
   }
