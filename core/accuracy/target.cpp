@@ -131,7 +131,7 @@ class TargetRender {
     const auto start = Clock::now();
     const RenderResult result = film_.result();
     const double resolving = std::chrono::duration<double>(Clock::now() - start).count();
-    const double seconds = kReserve * (resolving + request_.first_picture(result));
+    const double seconds = kReserve * (resolving + request_.first_picture(result)) + 0.05;
     deadline_ -= std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
