@@ -250,11 +250,11 @@ TEST(SamplesFor, FindsTheLeastThatIsSure) {
   EXPECT_FALSE(within.measured || within.extrapolated);
   EXPECT_EQ(samples_for(c, 0.2, true)->samples, 32);
   EXPECT_EQ(samples_for(c, 2, true)->samples, 4);
-  // 103 without the margin of (n / 64)^0.08; with it and a slope of 0.494 at least, (n / 64)^0.414 = 1.27: 114.
+  // 103 without the margin of (n / 64)^0.04; with it and a slope of 0.494 at least, (n / 64)^0.454 = 1.27: 109.
   const SamplesFor beyond = *samples_for(c, 0.1, false);
   EXPECT_TRUE(beyond.extrapolated);
-  EXPECT_GT(beyond.samples, 110);
-  EXPECT_LT(beyond.samples, 118);
+  EXPECT_GT(beyond.samples, 106);
+  EXPECT_LT(beyond.samples, 112);
   EXPECT_EQ(samples_for(c, 0.1, true)->samples, 128);
   EXPECT_FALSE(samples_for(c, 0.05, false));
 }
