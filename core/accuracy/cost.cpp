@@ -131,11 +131,14 @@ class Study {
     const CostLevel& last = levels_.levels.back();
     const std::vector<double> errors = squared_errors(last, levels_.reference);
     crop_ = heaviest_place(levels_.reference, errors, kCrop);
-    std::vector<double> samples, cpu, wall;
+    // No samples take what is fixed, which was measured too.
+    std::vector<double> samples{0}, cpu{fixed_.cpu}, wall{fixed_.wall};
     for (const CostLevel& level : levels_.levels) {
       add_level(level);
-      samples.push_back(level.samples);
-      cpu.push_back(r.settings.back().cpu_seconds.value), wall.push_back(r.settings.back().seconds.value);
+      for (const Elapsed& one : level.spent) {
+        samples.push_back(level.samples);
+        cpu.push_back(fixed_.cpu + one.cpu), wall.push_back(fixed_.wall + one.wall);
+      }
     }
     fit(samples, cpu, wall);
     const WorstThings worst = find_worst(world_, errors, levels_.reference, *file_.sources);

@@ -105,7 +105,7 @@ class Comparing {
     clock_.doing("the scene beside itself");
     CostWorld other = open_world(file_, world_, {}, request_, clock_);
     if (!other.usable) return;
-    built_again_ = other.fixed;
+    built_again_ = other.building;
     const CostPairs pairs = render_pairs(base_, other, request_, clock_, samples_, pairs_);
     if (pairs.size() < kFewestPairs) return;
     const Estimate more = taken(cpu_of(pairs.variant_spent), cpu_of(pairs.base_spent)).difference;
@@ -139,16 +139,21 @@ class Comparing {
     s.knob = alternative.variant.knob, s.value = alternative.variant.value, s.samples = pairs.samples;
     s.command = cost_command(request_, samples_, alternative.variant.flags);
     set_seconds(fixed_of(other), pairs.variant_spent, s);
-    if (!alternative.same_limit) s.bias = difference.bias;
-    judge_.judge(pairs.variant, s, s.bias ? s.bias->value : 0);
+    judge_.judge(pairs.variant, s, alternative.same_limit ? 0 : difference.bias.value);
+    if (!alternative.same_limit || has_other_limit(s, difference)) s.bias = difference.bias;
     s.crop = crop_of(pairs.variant.front(), crop_);
     CostChange& change = s.change.emplace();
     change.from = alternative.from;
     const PairedDifference taken_more = taken(cpu_of(pairs.variant_spent), cpu_of(pairs.base_spent));
     change.seconds = taken_more.difference, change.resolved = taken_more.resolved;
     change.share = change.seconds.value / mean_of(cpu_of(pairs.base_spent));
-    if (alternative.same_limit) change.noise = noise_ratio(pairs, levels_);
+    if (!s.bias) change.noise = noise_ratio(pairs, levels_);
     change.mean_change = difference.mean_change, change.pixels_changed = difference.pixels_changed;
+  }
+
+  /// Samplers have one limit, but for those that put all samples at the same places: then most of the error is bias.
+  static bool has_other_limit(const CostSetting& s, const PairDifference& difference) {
+    return difference.bias.low > 0 && 2 * difference.bias.low * difference.bias.low > s.nrmse.value * s.nrmse.value;
   }
 
   void add_effect(const CostAlternative& alternative, const CostPairs& pairs, const PairDifference& difference) {
@@ -170,8 +175,8 @@ class Comparing {
   Elapsed fixed_of(const CostWorld& variant) const {
     Elapsed fixed{base_.fixed.wall + request_.before.wall, base_.fixed.cpu + request_.before.cpu};
     if (!built_again_) return fixed;
-    fixed.wall = std::max(0.0, fixed.wall + variant.fixed.wall - built_again_->wall);
-    fixed.cpu = std::max(0.0, fixed.cpu + variant.fixed.cpu - built_again_->cpu);
+    fixed.wall = std::max(0.0, fixed.wall + variant.building.wall - built_again_->wall);
+    fixed.cpu = std::max(0.0, fixed.cpu + variant.building.cpu - built_again_->cpu);
     return fixed;
   }
 
@@ -195,7 +200,7 @@ class Comparing {
   CostClock& clock_;
   CostComparisons out_;
   int samples_ = 1, pairs_ = 0;
-  std::optional<Elapsed> built_again_;  ///< CostWorld::fixed of the scene, built once more.
+  std::optional<Elapsed> built_again_;  ///< CostWorld::building of the scene, once more.
   double bias_of_place_ = 0;            ///< Share of the time.
   double overhead_ = 0;                 ///< Seconds of judging pictures, as far as known.
 };

@@ -1,6 +1,7 @@
 #include "core/accuracy/cost_levels.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 
@@ -15,6 +16,8 @@ constexpr int kReferenceTimes = 16;
 constexpr uint32_t kReferenceSeed = 1000;
 /// A level is begun when this many times its expected time is left.
 constexpr double kMargin = 1.1;
+/// So many times the time that all processors would take is believed.
+constexpr double kBusy = 1.5;
 /// Pictures of all replicates and levels are kept: beyond this many pixels there are fewer of them.
 constexpr int64_t kManyPixels = 4'000'000;
 
@@ -29,6 +32,9 @@ class LevelStudy {
   LevelStudy(CostWorld& world, const CostRequest& request, CostClock& clock, double until)
       : world_(world), seed_(request.seed), clock_(clock), until_(until), extends_(world.scene().sampler().extends()) {
     out_.per_sample = world.per_sample;
+    // One look at a machine that others use as well may take long by chance: what the processor did for it says more.
+    const int threads = request.threads > 0 ? request.threads : tbb::this_task_arena::max_concurrency();
+    out_.per_sample.wall = std::min(out_.per_sample.wall, kBusy * out_.per_sample.cpu / threads);
     const Vec2i size = world.scene().camera().film.resolution;
     out_.replicates = int64_t{size.x} * size.y > kManyPixels ? kFewReplicates : kReplicates;
   }
@@ -39,6 +45,7 @@ class LevelStudy {
     films_.emplace(world_, seed_, out_.replicates);
     halves_.emplace(world_, seed_ + kReferenceSeed, 2);
     while (fits(samples) && add_level(samples)) samples *= 4;
+    if (!out_.cut && !out_.levels.empty() && fits(samples / 2)) add_level(samples / 2);
     return std::move(out_);
   }
 

@@ -190,6 +190,26 @@ TEST(Cost, NamesWhatCarriesTheError) {
   EXPECT_TRUE(r.worst[0].pixel.x == 15 || r.worst[0].pixel.x == 16) << r.worst[0].pixel.x;
 }
 
+TEST(Cost, TellsSamplersOfAnotherLimit) {
+  // A stripe covers the middle quarter of each pixel. Samples in the middle of pixels see nothing else: the picture is 1
+  // and has no noise. Of random ones it is 1/4, which is a bias of 3/4 over that mean.
+  Rectangles stripes;
+  for (int i = 0; i < kSide; ++i) {
+    const double middle = -1 + (i + 0.5) * 2 / kSide;
+    stripes.add(middle - 0.25 / kSide, middle + 0.25 / kSide, -1, 1);
+  }
+  const std::string text = square("Sampler \"halton\" \"integer pixelsamples\" 4 \"bool samplepixelcenter\" \"true\"",
+                                  "Material \"matte\" \"rgb Kd\" [0 0 0]\n"
+                                  "AreaLightSource \"diffuse\" \"rgb L\" [1 1 1] \"bool twosided\" \"true\"\n" +
+                                      stripes.shape());
+  const CostReport r = study(text, {.seconds = 2, .quick = false}).report;
+  EXPECT_EQ(r.mean_radiance, 1);
+  const CostSetting* random = setting(r, "sampler", "random");
+  ASSERT_TRUE(random && random->bias);
+  // Known from 4 pairs or more of 4 samples or more: sqrt(3/16 / 16 / 1024 pixels) is 0.3 % of it; five times that.
+  EXPECT_NEAR(random->bias->value, 0.75, 0.02);
+}
+
 TEST(Cost, KeepsToItsTime) {
   for (bool quick : {true, false}) {
     const auto start = std::chrono::steady_clock::now();
