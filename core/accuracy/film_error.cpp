@@ -13,6 +13,7 @@ namespace {
 constexpr float kBrighter = 8;  ///< Times as bright as a pixel and as the picture: light that samples may have missed.
 constexpr float kQuieter = 1 / 64.0f;  ///< Of three degrees of freedom 0.3 % are by chance.
 constexpr int kSurroundings = 2;       ///< Pixels to each side.
+constexpr uint32_t kTelling = 16;      ///< Of fewer samples all may be alike where half of the light is in shadow.
 constexpr int kTile = 16;
 
 /// A window's pixels as numbers.
@@ -58,11 +59,13 @@ void doubt_dim_neighbours(const std::vector<float>& bright, const Grid& grid, in
   }
 }
 
-void doubt_quiet_pixels(std::span<const float> variance, const Grid& grid, std::vector<uint8_t>& doubted) {
+void doubt_quiet_pixels(std::span<const float> variance, std::span<const uint32_t> samples, const Grid& grid,
+                        std::vector<uint8_t>& doubted) {
   std::vector<float> sum(grid.size()), around;
   for (size_t p = 0; p < sum.size(); ++p) sum[p] = variance[3 * p] + variance[3 * p + 1] + variance[3 * p + 2];
   for (int y = 0; y < grid.height(); ++y) {
     for (int x = 0; x < grid.width(); ++x) {
+      if (samples[grid.at(x, y)] < kTelling) continue;
       around.clear();
       grid.around(x, y, kSurroundings, [&](size_t p) { around.push_back(sum[p]); });
       const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
@@ -152,12 +155,13 @@ double mean_of(std::span<const float> rgb) {
   return std::accumulate(rgb.begin(), rgb.end(), 0.0) / static_cast<double>(rgb.size());
 }
 
-Doubts find_doubts(const Picture& picture, std::span<const float> variance, int reach) {
+Doubts find_doubts(const Picture& picture, std::span<const float> variance, std::span<const uint32_t> samples,
+                   int reach) {
   const Grid grid(picture);
   Doubts out;
   out.pixels.assign(grid.size(), 0);
   doubt_dim_neighbours(brightness(picture, grid), grid, reach, out.pixels);
-  doubt_quiet_pixels(variance, grid, out.pixels);
+  doubt_quiet_pixels(variance, samples, grid, out.pixels);
   spread_to_tiles(picture, grid, out.pixels);
   for (int y = 0; y < grid.height(); ++y) {
     for (int x = 0; x < grid.width(); ++x) {

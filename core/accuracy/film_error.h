@@ -16,15 +16,17 @@ namespace whit {
 
 /// Pixels of which a few samples cannot tell the error, left out of the claim: those beside something much brighter, of
 /// which they may get light that no sample has met; those much quieter than their surroundings, whose samples have
-/// perhaps missed what makes these noisy; and all of a tile of 16 x 16 where a fourth is one of the two.
+/// perhaps missed what makes these noisy, where a pixel has the 16 samples that tell; and all of a tile of 16 x 16 where a
+/// fourth is one of the two.
 struct Doubts {
   std::vector<uint8_t> pixels;  ///< 1 for each pixel of the window that is doubted, row by row.
   int64_t count = 0;
   Box2i where;                 ///< Around all of them, in pixels of the picture; empty without any.
   std::vector<Vec2i> densest;  ///< A doubted pixel of each of the three tiles that have the most of them.
 };
-/// `reach`: pixels that the filter reaches beyond its own. `variance`: three a pixel.
-Doubts find_doubts(const Picture& picture, std::span<const float> variance, int reach);
+/// `variance`: three a pixel. `samples`: of each pixel. `reach`: pixels that the filter reaches beyond its own.
+Doubts find_doubts(const Picture& picture, std::span<const float> variance, std::span<const uint32_t> samples,
+                   int reach);
 
 /// An error that is claimed.
 struct ErrorClaim {

@@ -1,6 +1,7 @@
 #include "core/accuracy/target.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -13,7 +14,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr uint32_t kFirstPass = 64;
+/// Samples that are taken before the first look, which says how many more belong to the first pass: a twelfth of what
+/// the target would take everywhere, so that quiet places have no more than they need; 64 of them tell enough.
+constexpr uint32_t kFirstLook = 4, kFirstPass = 64;
+constexpr double kFirstShare = 1.0 / 12;
+/// No unit has less than this share of the samples of the one that has the most, nor has to have more than 64 for it: what
+/// looked quiet by chance is looked at again.
+constexpr uint32_t kMostTimes = 32;
 constexpr uint32_t kSet = 16;  ///< Samples that a sampler spreads together which cannot go on.
 constexpr double kWorthDoubling = 1.4;
 constexpr double kReserve = 1.3;  ///< Times as long as it took first may writing take in the end.
@@ -115,15 +122,44 @@ class TargetRender {
 
   /// Met: done. Where there is a deadline the samples come in small passes, so that there is a picture early.
   TargetEnd first_pass() {
-    const uint32_t first = std::min(kFirstPass, request_.max_samples);
+    uint32_t first = std::min(kFirstPass, request_.max_samples);
     expected_ = pixels_ * first;
-    for (uint32_t n = request_.deadline ? std::min(4u, first) : first;; n = std::min(2 * n, first)) {
+    for (uint32_t n = std::min(kFirstLook, first);;) {
       const double more = pixels_ * (n - units_.front().samples);
       if (rate_ > 0 && seconds_for(more) > seconds_until(deadline_)) return use_time();
       if (!pass(n)) return stopped();
       write_early();
+      if (n == kFirstLook && request_.error > 0) first = std::min(first, samples_of_first_pass());
       if (n == first) return TargetEnd::Met;
+      n = std::min(2 * n, first);  // doubled, so that blocks of samples stay nets
     }
+  }
+
+  /// By a first look, which is no test of anything.
+  uint32_t samples_of_first_pass() {
+    picture_ = film_.picture();
+    const std::vector<float> variance = film_.variance();
+    const ErrorClaim claim = claim_error(picture_, variance, doubts_of(picture_, variance), request_.confidence);
+    const double times = claim.value / request_.error;
+    const double samples = kFirstShare * kFirstLook * times * times;
+    if (!(samples < kFirstPass)) return kFirstPass;
+    return std::max(kFirstLook, std::bit_floor(static_cast<uint32_t>(samples)));
+  }
+
+  Doubts doubts_of(const Picture& picture, const std::vector<float>& variance) const {
+    const Box2i& window = picture.window;
+    std::vector<uint32_t> samples(variance.size() / 3);
+    for (const FilmRender::Unit& u : units_) {
+      for (int y = std::max(u.pixels.min.y, window.min.y); y < std::min(u.pixels.max.y, window.max.y); ++y) {
+        for (int x = std::max(u.pixels.min.x, window.min.x); x < std::min(u.pixels.max.x, window.max.x); ++x) {
+          if (!u.holds(x, y)) continue;
+          const Vec2i at = Vec2i(x, y) - window.min;
+          samples[static_cast<size_t>(at.y) * static_cast<size_t>(picture.width()) + static_cast<size_t>(at.x)] =
+              u.samples;
+        }
+      }
+    }
+    return find_doubts(picture, variance, samples, reach_);
   }
 
   void write_early() {
@@ -169,7 +205,7 @@ class TargetRender {
   bool look() {
     picture_ = film_.picture();
     const std::vector<float> variance = film_.variance();
-    doubts_ = find_doubts(picture_, variance, reach_);
+    doubts_ = doubts_of(picture_, variance);
     const double n = tests_ + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
     claim_ = claim_error(picture_, variance, doubts_, confidence);
     if (!(claim_.value <= request_.error)) return false;
@@ -222,7 +258,13 @@ class TargetRender {
       want[u] = std::min(parts[u].samples * (twice ? 2 : 1), request_.max_samples);
       any |= want[u] > parts[u].samples;
     }
-    return any ? want : most_needed(parts);
+    if (!any) want = most_needed(parts);
+    // Those that have least follow those that have most.
+    const uint32_t most = *std::max_element(want.begin(), want.end()), least = std::min(most / kMostTimes, kFirstPass);
+    for (size_t u = 0; u < want.size(); ++u) {
+      if (want[u] < least) want[u] = std::max(want[u], std::min(2 * parts[u].samples, request_.max_samples));
+    }
+    return want;
   }
 
   /// Units by how much of the variance each further sample takes away, the most first.
@@ -269,7 +311,7 @@ class TargetRender {
     if (out_.end != TargetEnd::Met) {
       const Picture& picture = out_.rendered.result.picture;
       const std::vector<float> variance = film_.variance();
-      doubts_ = find_doubts(picture, variance, reach_);
+      doubts_ = doubts_of(picture, variance);
       claim_ = claim_error(picture, variance, doubts_, request_.confidence);
     }
     out_.claim = claim_, out_.doubts = std::move(doubts_);

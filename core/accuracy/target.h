@@ -1,6 +1,6 @@
 // Rendering to an accuracy or to a time.
 //
-// A first pass gives every pixel 64 samples in four blocks. Then, look after look, the error is estimated, and the units
+// A first pass gives every pixel 4 to 64 samples in four blocks. Then, look after look, the error is estimated, and the units
 // of the film that have the most variance for each sample get twice as many, until the error is below the target with the
 // confidence asked for (core/accuracy/film_error.h), or time or samples are used up.
 //

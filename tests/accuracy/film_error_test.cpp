@@ -23,6 +23,10 @@ Doubts none(const Picture& p) {
   return {std::vector<uint8_t>(static_cast<size_t>(p.width() * p.window.max.y)), 0, {}, {}};
 }
 
+Doubts doubts_of(const Picture& p, const std::vector<float>& variance, int reach, uint32_t samples = 16) {
+  return find_doubts(p, variance, std::vector<uint32_t>(variance.size() / 3, samples), reach);
+}
+
 TEST(ClaimError, IsTheRootOfTheMeanVarianceOverTheMeanRadiance) {
   // 64 x 32 pixels are 32 tiles of 8 x 8, each with three degrees of freedom: all alike they have 96 together.
   const Picture p = grey(64, 32, 2);
@@ -91,25 +95,26 @@ TEST(ClaimError, HoldsAsOftenAsItSays) {
 TEST(FindDoubts, DoubtsTheNeighboursOfLamps) {
   Picture p = grey(48, 48, 1);
   const std::vector<float> variance(p.rgb.size(), 1);
-  EXPECT_EQ(find_doubts(p, variance, 0).count, 0);
+  EXPECT_EQ(doubts_of(p, variance, 0).count, 0);
   for (size_t c = 0; c < 3; ++c) p.rgb[3 * (20 * 48 + 20) + c] = 100;
-  const Doubts own = find_doubts(p, variance, 0);
+  const Doubts own = doubts_of(p, variance, 0);
   EXPECT_EQ(own.count, 8);
   EXPECT_EQ(own.where, Box2i({19, 19}, {21, 21}));
   EXPECT_FALSE(own.pixels[20 * 48 + 20]);
   ASSERT_EQ(own.densest.size(), 1u);
   EXPECT_EQ(own.densest[0], Vec2i(19, 19));
-  EXPECT_EQ(find_doubts(p, variance, 1).count, 24);  // a filter that reaches a pixel further doubts another ring
+  EXPECT_EQ(doubts_of(p, variance, 1).count, 24);  // a filter that reaches a pixel further doubts another ring
 }
 
 TEST(FindDoubts, DoubtsQuietPixelsInNoise) {
   const Picture p = grey(32, 32, 1);
   std::vector<float> variance(p.rgb.size(), 1);
   for (size_t c = 0; c < 3; ++c) variance[3 * (10 * 32 + 10) + c] = 0.001f;
-  EXPECT_EQ(find_doubts(p, variance, 0).count, 1);
+  EXPECT_EQ(doubts_of(p, variance, 0).count, 1);
+  EXPECT_EQ(doubts_of(p, variance, 0, 8).count, 0);  // Eight samples may be alike by chance.
   // A quiet half is no pixel that has missed something.
   for (int y = 0; y < 32; ++y) std::fill_n(&variance[static_cast<size_t>(3 * 32 * y)], 48, 0.0f);
-  EXPECT_EQ(find_doubts(p, variance, 0).count, 0);
+  EXPECT_EQ(doubts_of(p, variance, 0).count, 0);
 }
 
 TEST(FindDoubts, TakesWholeTilesWhereAFourthIsDoubted) {
@@ -118,7 +123,7 @@ TEST(FindDoubts, TakesWholeTilesWhereAFourthIsDoubted) {
   for (int y = 1; y < 16; y += 3) {
     for (int x = 1; x < 16; x += 3) p.rgb[static_cast<size_t>(3 * (y * 32 + x))] = 1e6f;
   }
-  const Doubts d = find_doubts(p, std::vector<float>(p.rgb.size(), 1), 0);
+  const Doubts d = doubts_of(p, std::vector<float>(p.rgb.size(), 1), 0);
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 16; ++x) EXPECT_TRUE(d.pixels[static_cast<size_t>(y * 32 + x)]);
   }

@@ -64,10 +64,12 @@ TEST(Target, IsMetWithMoreSamplesWhereTheNoiseIs) {
   ASSERT_EQ(o.end, TargetEnd::Met);
   EXPECT_LE(o.claim.high, 0.004);
   EXPECT_LT(o.claim.value, o.claim.high);
-  EXPECT_GT(o.samples_mean, 64);
+  EXPECT_GT(o.samples_mean, 16);
   const std::vector<float>& samples = o.rendered.result.aovs.channels.back().values;
-  EXPECT_EQ(*std::min_element(samples.begin(), samples.end()), 64);
-  EXPECT_GE(*std::max_element(samples.begin(), samples.end()), 4 * 64);
+  const float least = *std::min_element(samples.begin(), samples.end());
+  const float most = *std::max_element(samples.begin(), samples.end());
+  EXPECT_GE(most, 8 * least);
+  EXPECT_LE(most, 64 * least);  // those that have least follow those that have most
 }
 
 TEST(Target, IsTheSamePictureForAnyThreads) {
