@@ -247,10 +247,15 @@ class TargetRender {
   std::vector<uint32_t> next(const std::vector<Allotment>& parts) {
     const double mean = mean_of(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
     const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
-    const double aim = 0.97 * sure * request_.error * mean;
-    const std::vector<double> ideal = allot(parts, 3 * pixels * aim * aim, request_.max_samples);
+    const auto numbers_for = [&](double error) {
+      return allot(parts, 3 * pixels * error * error * mean * mean, request_.max_samples);
+    };
+    const double aim = 0.97 * sure * request_.error;
     expected_ = 0;
-    for (size_t u = 0; u < parts.size(); ++u) expected_ += parts[u].area * ideal[u];
+    const std::vector<double> in_the_end = numbers_for(aim);
+    for (size_t u = 0; u < parts.size(); ++u) expected_ += parts[u].area * in_the_end[u];
+    // One doubling ahead and no further: errors of nets fall faster than their first blocks say.
+    const std::vector<double> ideal = numbers_for(std::max(aim, claim_.value * M_SQRT1_2));
     std::vector<uint32_t> want(parts.size());
     bool any = false;
     for (size_t u = 0; u < parts.size(); ++u) {
