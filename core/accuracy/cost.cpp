@@ -13,6 +13,7 @@
 #include "core/accuracy/cost_words.h"
 #include "core/accuracy/cost_worst.h"
 #include "core/accuracy/estimate.h"
+#include "core/accuracy/flip.h"
 #include "core/accuracy/measures.h"
 #include "core/plugin/registry.h"
 
@@ -21,6 +22,9 @@ namespace {
 
 /// Of the time, what levels and reference may take; the rest is for knobs and effects.
 constexpr double kLevelsShare = 0.55, kLevelsShareQuick = 0.92;
+/// Share of the time that is kept for reporting, and so many levels are thought to be judged before.
+constexpr double kReserve = 0.03;
+constexpr int kFewLevels = 3;
 /// Sides of the crops that are shown side by side.
 constexpr int kCrop = 96;
 
@@ -63,12 +67,14 @@ class Study {
   }
 
   void measure() {
-    clock_.keep(0.03 * request_.seconds + time_of_a_report());
+    const double judging = seconds_of_judging();
+    clock_.keep(kReserve * request_.seconds + (kFewLevels + 1) * judging);
     const double until = (request_.quick ? kLevelsShareQuick : kLevelsShare) * request_.seconds;
     levels_ = study_levels(world_, request_, clock_, until);
     if (levels_.levels.empty()) return say_nothing_fits();
     if (!is_measurable()) return;
     judge_levels();
+    clock_.keep(kReserve * request_.seconds + judging);
     if (!request_.quick) compare();
     const bool nets = report().sampler != "random";
     const CostAnswers answers = answer(report(), fits_, nets, request_);
@@ -78,12 +84,16 @@ class Study {
     mark_pareto(report().settings);
   }
 
-  /// Seconds of what is done with pictures after rendering, by doing some of it.
-  double time_of_a_report() const {
-    const double pixels = static_cast<double>(report_size().x) * report_size().y;
-    return 2e-6 * pixels;
+  /// What judging the pictures of a setting takes, most of which is FLIP, by doing it with a black one. Writing them down
+  /// takes as long.
+  double seconds_of_judging() const {
+    const Stopwatch watch;
+    const Vec2i size = out_.report.resolution;
+    std::vector<float> black(3 * static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
+    world_.output.display->apply(black.data(), black.size() / 3);
+    flip(black, black, size.x, size.y);
+    return 1.5 * watch.elapsed().wall;
   }
-  Vec2i report_size() const { return out_.report.resolution; }
 
   void say_too_slow() {
     report().complete = false;

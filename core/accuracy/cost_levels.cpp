@@ -41,6 +41,8 @@ class LevelStudy {
 
   CostLevels run() {
     int samples = first_level();
+    // Where the first level is cut, it takes more than was thought.
+    out_.needs = std::max(clock_.spent() + kMargin * cost_of(1, out_.replicates), samples == 0 ? 0 : 2 * until_);
     if (samples == 0) return std::move(out_);
     films_.emplace(world_, seed_, out_.replicates);
     halves_.emplace(world_, seed_ + kReferenceSeed, 2);
@@ -57,7 +59,7 @@ class LevelStudy {
     return each * (samples - before) * out_.per_sample.wall;
   }
   bool fits(int samples) const {
-    return clock_.left() > 0 && clock_.spent() + kMargin * cost_of(samples, out_.replicates) < until_;
+    return kMargin * cost_of(samples, out_.replicates) < std::min(until_ - clock_.spent(), clock_.left());
   }
 
   /// 4; fewer where that is too much or would be the only level; 0 where nothing fits.
@@ -65,9 +67,7 @@ class LevelStudy {
     if (fits(16)) return 4;
     if (fits(1)) return 1;
     out_.replicates = std::min(out_.replicates, kFewReplicates);
-    if (fits(1)) return 1;
-    out_.needs = clock_.spent() + kMargin * cost_of(1, out_.replicates);
-    return 0;
+    return fits(1) ? 1 : 0;
   }
 
   bool add_level(int samples) {
