@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "core/accuracy/cost_pairs.h"
 #include "core/accuracy/cost_pictures.h"
@@ -105,7 +104,6 @@ class Comparing {
     clock_.doing("the scene beside itself");
     CostWorld other = open_world(file_, world_, {}, request_, clock_);
     if (!other.usable) return;
-    built_again_ = other.building;
     const CostPairs pairs = render_pairs(base_, other, request_, clock_, samples_, pairs_);
     if (pairs.size() < kFewestPairs) return;
     const Estimate more = taken(cpu_of(pairs.variant_spent), cpu_of(pairs.base_spent)).difference;
@@ -127,18 +125,18 @@ class Comparing {
     if (pairs.size() < std::min(pairs_, kFewestPairs)) return false;
     const Stopwatch judging;
     const PairDifference difference = difference_of(pairs, levels_.reference);
-    if (alternative.variant.off.empty()) add_setting(alternative, other, pairs, difference);
+    if (alternative.variant.off.empty()) add_setting(alternative, pairs, difference);
     else add_effect(alternative, pairs, difference);
     overhead_ = std::max(overhead_, judging.elapsed().wall);
     return true;
   }
 
-  void add_setting(const CostAlternative& alternative, const CostWorld& other, const CostPairs& pairs,
-                   const PairDifference& difference) {
+  void add_setting(const CostAlternative& alternative, const CostPairs& pairs, const PairDifference& difference) {
     CostSetting& s = out_.settings.emplace_back();
     s.knob = alternative.variant.knob, s.value = alternative.variant.value, s.samples = pairs.samples;
     s.command = cost_command(request_, samples_, alternative.variant.flags);
-    set_seconds(fixed_of(other), pairs.variant_spent, s);
+    // No knob has a part in building that is larger than what chance does to it.
+    set_seconds(fixed_, pairs.variant_spent, s);
     judge_.judge(pairs.variant, s, alternative.same_limit ? 0 : difference.bias.value);
     if (!alternative.same_limit || has_other_limit(s, difference)) s.bias = difference.bias;
     s.crop = crop_of(pairs.variant.front(), crop_);
@@ -170,16 +168,6 @@ class Comparing {
     e.where = image_of(levels_.reference.width(), levels_.reference.height(), difference.magnitude, kThumbnail);
   }
 
-  /// What a command takes around the samples of a variant: that of the scene, and what building the variant took more
-  /// than building the scene once more did. (The first build of a process pays for what is done once.)
-  Elapsed fixed_of(const CostWorld& variant) const {
-    Elapsed fixed{base_.fixed.wall + request_.before.wall, base_.fixed.cpu + request_.before.cpu};
-    if (!built_again_) return fixed;
-    fixed.wall = std::max(0.0, fixed.wall + variant.building.wall - built_again_->wall);
-    fixed.cpu = std::max(0.0, fixed.cpu + variant.building.cpu - built_again_->cpu);
-    return fixed;
-  }
-
   /// What a takes more than b, pair by pair.
   PairedDifference taken(std::vector<double> a, const std::vector<double>& b) const {
     const double unknown = bias_of_place_ * mean_of(b);
@@ -200,9 +188,9 @@ class Comparing {
   CostClock& clock_;
   CostComparisons out_;
   int samples_ = 1, pairs_ = 0;
-  std::optional<Elapsed> built_again_;  ///< CostWorld::building of the scene, once more.
-  double bias_of_place_ = 0;            ///< Share of the time.
-  double overhead_ = 0;                 ///< Seconds of judging pictures, as far as known.
+  const Elapsed fixed_{base_.fixed.wall + request_.before.wall, base_.fixed.cpu + request_.before.cpu};
+  double bias_of_place_ = 0;  ///< Share of the time.
+  double overhead_ = 0;       ///< Seconds of judging pictures, as far as known.
 };
 
 }  // namespace

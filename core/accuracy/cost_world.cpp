@@ -103,7 +103,7 @@ CostWorld open_world(const ParsedFile& file, size_t number, const CostVariant& v
   options.robust_traversal = variant.robust;
   world.built = build_world(std::move(planned), options);
   world.said.append(world.built.said);
-  world.building = planning.elapsed();
+  world.fixed = planning.elapsed();
   if (world.said.has_errors() || !world.built.scene) return world;
 
   world.own_samples = world.scene().samples_per_pixel;
@@ -116,7 +116,7 @@ CostWorld open_world(const ParsedFile& file, size_t number, const CostVariant& v
   world.said.append(textures->errors());
   world.too_slow = !again.complete;
   world.usable = again.complete && !world.said.has_errors();
-  world.fixed = world.building + first.around + more(first.samples, again.samples);
+  world.fixed = world.fixed + first.around + more(first.samples, again.samples);
   world.per_sample = again.samples;
   return world;
 }

@@ -32,7 +32,6 @@ struct CostWorld {
   OutputPlan output;  ///< Of the picture as the plain command writes it, into a folder that is gone.
   RenderOptions options;
   Diagnostics said;
-  Elapsed building;     ///< Planning and building.
   Elapsed fixed;        ///< Of a render with any number of samples: building, first looks, writing.
   Elapsed per_sample;   ///< For all pixels, by a render of one.
   int own_samples = 0;  ///< Per pixel, that the scene asks for.

@@ -127,6 +127,26 @@ class Cost(unittest.TestCase):
         self.assertEqual(code, 5, err)
         self.assertIn("--time", out)
 
+    def test_pictures_of_which_nothing_can_be_told(self):
+        self.write("black.pbrt", SCENE.replace("[9 9 9]", "[0 0 0]"))
+        code, out, err = self.whit("cost", "black.pbrt", "--time", "2s")
+        self.assertEqual(code, 1, err)
+        self.assertIn("black", out)
+        self.write("broken.png", "\x89PNG but no more")
+        self.write("texture.pbrt", SCENE.replace("WorldBegin\n", 'WorldBegin\nTexture "t" "spectrum" "imagemap" '
+                   '"string filename" "broken.png"\nMaterial "matte" "texture Kd" "t"\n'))
+        code, out, err = self.whit("cost", "texture.pbrt", "--time", "2s")
+        self.assertEqual(code, 4, err)
+        self.assertIn("broken.png", err)
+        self.assertEqual(out, "")
+
+    def test_a_crop(self):
+        self.write("crop.pbrt", SCENE.replace('"film-name.exr"]', '"film-name.exr"] "float cropwindow" [0.5 1 0 0.5]'))
+        code, out, err = self.whit("cost", "crop.pbrt", "--quick", "--time", "1s", "--json", "-")
+        self.assertEqual(code, 0, err)
+        for pixel in json.loads(out)["worst"]["pixels"]:
+            self.assertTrue(32 <= pixel["x"] < 64 and 0 <= pixel["y"] < 24, pixel)
+
     def test_times_in_all_units(self):
         for time_text in ("500ms", "0.5s", "0.5", "0.01min"):
             code, _, err = self.whit("cost", "a scene.pbrt", "--quick", "--time", time_text)

@@ -141,7 +141,9 @@ int run(const CostFlags& flags, const CostRequest& begun) {
   if (result.said.has_errors()) return exit_code(result.said);
   const int written = write_report(flags, result.report);
   if (written != kDone) return written;
-  return interrupted != 0 || result.report.settings.empty() ? kLimit : kDone;
+  if (interrupted != 0) return kLimit;
+  if (!result.report.settings.empty()) return kDone;
+  return result.report.complete ? kNo : kLimit;  // Nothing can be told of this picture, or not in this time.
 }
 
 }  // namespace
