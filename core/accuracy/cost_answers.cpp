@@ -14,6 +14,8 @@ namespace {
 /// Errors that people ask for, from the coarsest to the finest.
 constexpr double kTargets[] = {0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005, 0.0002, 0.0001};
 constexpr double kUsual = 0.01;
+/// Orders of convergence below this are not believed.
+constexpr double kSlowest = 0.2;
 /// Below this share of the pixels, a change is called small.
 constexpr double kFewPixels = 0.02;
 /// Below this share of the time, savings are not worth a sentence.
@@ -136,25 +138,35 @@ class Answering {
     out_.answers.push_back(std::move(a));
   }
 
-  /// From a measured level to one where the error is half, by the order of convergence.
+  /// What half the error of some samples takes, by the order of convergence.
+  struct Half {
+    int samples;   ///< Of half the error, doubled until enough.
+    double times;  ///< The seconds.
+  };
+  Half half_of(const CostSetting& from, double order) const {
+    const double wanted = from.samples * std::pow(2.0, 1 / std::max(order, kSlowest));
+    Half out{from.samples, fits_.cpu.predict(wanted).value / std::max(fits_.cpu.predict(from.samples).value, 1e-9)};
+    while (out.samples < 0.9 * wanted) out.samples *= 2;
+    return out;
+  }
+
+  /// From the last level whose error was seen to become half; else from the first.
   void say_half() {
     if (levels_.size() < 2 || !(report_.order.value > 0)) return;
-    const CostSetting& from = *levels_[levels_.size() - 2];
-    const auto times = [&](double order) {
-      const double samples = from.samples * std::pow(2.0, 1 / std::max(order, 0.2));
-      return fits_.cpu.predict(samples).value / std::max(from.cpu_seconds.value, 1e-9);
-    };
-    const double factor = std::pow(2.0, 1 / std::max(report_.order.value, 0.2));
-    int samples = from.samples;
-    while (samples < factor * from.samples * 0.999) samples *= 2;
+    const CostSetting* from = levels_.front();
+    for (const CostSetting* l : levels_) {
+      if (half_of(*l, report_.order.value).samples <= levels_.back()->samples) from = l;
+    }
+    const auto times = [&](double order) { return half_of(*from, order).times; };
     CostAnswer a;
     double upper95 = 0, wall = 0;
-    if (!predict(samples, a, upper95, wall)) return;
+    if (!predict(half_of(*from, report_.order.value).samples, a, upper95, wall)) return;
     a.text = fmt::format(
-        "Half the error costs x{:.2g} [{:.2g}, {:.2g}] the time, from the {} of {} samples on: it falls "
-        "as samples^-{:.2f} [{:.2f}, {:.2f}].",
-        times(report_.order.value), times(report_.order.high), times(report_.order.low), percent_text(from.nrmse.value),
-        from.samples, report_.order.value, report_.order.low, report_.order.high);
+        "Half the error costs x{:.2g} [{:.2g}, {:.2g}] the time, from the {} of {} samples on: it falls as "
+        "samples^-{:.2f} "
+        "[{:.2f}, {:.2f}].",
+        times(report_.order.value), times(report_.order.high), times(report_.order.low),
+        percent_text(from->nrmse.value), from->samples, report_.order.value, report_.order.low, report_.order.high);
     out_.answers.push_back(std::move(a));
   }
 

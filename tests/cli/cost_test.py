@@ -84,7 +84,7 @@ class Cost(unittest.TestCase):
         for command in commands[:2] + commands[-2:] + [a["command"] for a in report["answers"]]:
             self.assertNotIn("--outfile", command)
             self.assertNotIn("--seed", command)
-        for command in {c for c in commands[:2] + commands[-2:]}:
+        for command in {*commands[:2], *commands[-2:], report["answers"][-1]["command"]}:
             done = subprocess.run(command + " --quiet", shell=True, cwd=self.folder, capture_output=True, check=False)
             self.assertEqual(done.returncode, 0, (command, done.stderr))
         self.assertTrue(os.path.exists(os.path.join(self.folder, "film-name.exr")))
