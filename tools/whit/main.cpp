@@ -19,7 +19,7 @@ const std::vector<Command>& commands() {
       {"check", check_command, "check SCENE...", "report every problem of a scene without rendering"},
       {"fmt", fmt_command, "fmt SCENE [--in-place]", "write a scene file in normal form"},
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
-      {"cost", cost_command, "cost SCENE [--time 60s] [--html FILE]", "show what accuracy costs in time"},
+      {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},
       {"diff", diff_command, "diff OUT REFERENCE [--json]", "measure how far two pictures are apart"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
       {"help", help_command, "help [CATEGORY [PLUGIN] | --json]", "list plugins and their parameters"},
