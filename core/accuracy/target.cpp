@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/accuracy/allotment.h"
 #include "core/base/stopwatch.h"
 #include "core/render/film_render.h"
 
@@ -18,12 +19,10 @@ using Clock = std::chrono::steady_clock;
 /// the target would take everywhere, so that quiet places have no more than they need; 64 of them tell enough.
 constexpr uint32_t kFirstLook = 4, kFirstPass = 64;
 constexpr double kFirstShare = 1.0 / 12;
-/// No unit has less than this share of the samples of the one that has the most, nor has to have more than 64 for it: what
-/// looked quiet by chance is looked at again.
-constexpr uint32_t kMostTimes = 32;
-constexpr uint32_t kSet = 16;  ///< Samples that a sampler spreads together which cannot go on.
-constexpr double kWorthDoubling = 1.4;
+constexpr uint32_t kSet = 16;     ///< Samples that a sampler spreads together which cannot go on.
 constexpr double kReserve = 1.3;  ///< Times as long as it took first may writing take in the end.
+/// An estimate with all pixels this many times above the target needs no look at which of them can be trusted.
+constexpr double kFarAbove = 1.5;
 
 double seconds_until(Clock::time_point then) { return std::chrono::duration<double>(then - Clock::now()).count(); }
 
@@ -34,10 +33,10 @@ class TargetRender {
         reach_(reach_of(*world.scene)),
         deadline_(request.deadline.value_or(Clock::time_point::max())),
         film_(*world.scene, with_progress(options, world)),
-        units_(film_.units()) {
-    for (const FilmRender::Unit& u : units_) areas_.push_back(area_of(u));
-    pixels_ = std::accumulate(areas_.begin(), areas_.end(), 0.0);
-  }
+        units_(film_.units()),
+        noise_(units_),
+        areas_(noise_.areas()),
+        pixels_(std::accumulate(areas_.begin(), areas_.end(), 0.0)) {}
 
   TargetOutcome run() {
     out_.end = first_pass();
@@ -50,14 +49,6 @@ class TargetRender {
   static int reach_of(const Scene& scene) {
     const FilterTable filter(scene.filter());
     return std::max(filter.x_reach(), filter.y_reach());
-  }
-
-  static double area_of(const FilmRender::Unit& u) {
-    double area = 0;
-    for (int y = u.pixels.min.y; y < u.pixels.max.y; ++y) {
-      for (int x = u.pixels.min.x; x < u.pixels.max.x; ++x) area += u.holds(x, y);
-    }
-    return area;
   }
 
   // ---- Passes ----
@@ -139,6 +130,7 @@ class TargetRender {
   uint32_t samples_of_first_pass() {
     picture_ = film_.picture();
     const std::vector<float> variance = film_.variance();
+    noise_.look(film_, units_, variance, picture_.window, reach_);
     const ErrorClaim claim = claim_error(picture_, variance, doubts_of(picture_, variance), request_.confidence);
     const double times = claim.value / request_.error;
     const double samples = kFirstShare * kFirstLook * times * times;
@@ -190,7 +182,7 @@ class TargetRender {
     while (true) {
       if (look()) return TargetEnd::Met;
       if (!tell()) return TargetEnd::Stopped;
-      const std::vector<Allotment> parts = allotments();
+      const std::vector<Allotment> parts = noise_.allotments(units_);
       std::vector<uint32_t> want = next(parts);
       if (added(want) == 0) return TargetEnd::Samples;
       const bool last = seconds_for(added(want)) > seconds_until(deadline_);
@@ -205,86 +197,41 @@ class TargetRender {
   bool look() {
     picture_ = film_.picture();
     const std::vector<float> variance = film_.variance();
-    doubts_ = doubts_of(picture_, variance);
+    noise_.look(film_, units_, variance, picture_.window, reach_);
     const double n = tests_ + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
+    if (is_far_above(variance, confidence)) return false;
+    doubts_ = doubts_of(picture_, variance), doubted_at_ = samples();
     claim_ = claim_error(picture_, variance, doubts_, confidence);
     if (!(claim_.value <= request_.error)) return false;
     ++tests_;
     return claim_.high <= request_.error;
   }
 
-  /// What the pixels of one colour say of the variance of a sample of the units of the other.
-  std::vector<Allotment> allotments() const {
-    std::vector<Allotment> parts(units_.size());
-    for (size_t u = 0; u < units_.size(); ++u) parts[u] = {areas_[u], 0, units_[u].samples};
-    for (int colour = 0; colour < 2; ++colour) {
-      const std::vector<float> variance = film_.variance(colour);
-      for (size_t tile = 0; tile + 1 < units_.size(); tile += 2) {
-        const size_t from = tile + static_cast<size_t>(colour), to = tile + 1 - static_cast<size_t>(colour);
-        parts[to].variance = mean_variance(variance, units_[from]) * units_[from].samples * parts[to].area;
-      }
-    }
-    return parts;
+  /// Doubts take longer to find than some passes take. What is noisiest may be doubted, so they are found now and then.
+  bool is_far_above(const std::vector<float>& variance, double confidence) {
+    if (samples() >= 2 * doubted_at_) return false;
+    doubts_ = {std::vector<uint8_t>(variance.size() / 3), 0, {}, {}};
+    claim_ = claim_error(picture_, variance, doubts_, confidence);
+    return claim_.value > kFarAbove * request_.error;
   }
 
-  /// Of the pixels of the unit's tile that samples of the variance's colour reach, all channels together.
-  double mean_variance(const std::vector<float>& variance, const FilmRender::Unit& unit) const {
-    const Box2i& window = picture_.window;
-    double sum = 0, n = 0;
-    for (int y = std::max(unit.pixels.min.y, window.min.y); y < std::min(unit.pixels.max.y, window.max.y); ++y) {
-      for (int x = std::max(unit.pixels.min.x, window.min.x); x < std::min(unit.pixels.max.x, window.max.x); ++x) {
-        const size_t p = static_cast<size_t>(y - window.min.y) * static_cast<size_t>(picture_.width()) +
-                         static_cast<size_t>(x - window.min.x);
-        const double v = double{variance[3 * p]} + double{variance[3 * p + 1]} + double{variance[3 * p + 2]};
-        if (std::isfinite(v)) sum += v, n += 1;
-      }
-    }
-    return n > 0 ? sum / n : 0.0;
-  }
-
-  /// The numbers of samples to have after the next pass: twice as many where the target takes that, or, where the
-  /// estimate is below it and not yet sure, in the eighth of the picture that needs it most.
+  /// The numbers of samples to have after the next pass.
   std::vector<uint32_t> next(const std::vector<Allotment>& parts) {
     const double mean = mean_of(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
+    const auto sum_at = [&](double error) { return 3 * pixels * error * error * mean * mean; };
     const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
-    const auto numbers_for = [&](double error) {
-      return allot(parts, 3 * pixels * error * error * mean * mean, request_.max_samples);
-    };
     const double aim = 0.97 * sure * request_.error;
     expected_ = 0;
-    const std::vector<double> in_the_end = numbers_for(aim);
+    const std::vector<double> in_the_end = allot(parts, sum_at(aim), request_.max_samples);
     for (size_t u = 0; u < parts.size(); ++u) expected_ += parts[u].area * in_the_end[u];
     // One doubling ahead and no further: errors of nets fall faster than their first blocks say.
-    const std::vector<double> ideal = numbers_for(std::max(aim, claim_.value * M_SQRT1_2));
-    std::vector<uint32_t> want(parts.size());
-    bool any = false;
-    for (size_t u = 0; u < parts.size(); ++u) {
-      const bool twice = ideal[u] >= kWorthDoubling * parts[u].samples;
-      want[u] = std::min(parts[u].samples * (twice ? 2 : 1), request_.max_samples);
-      any |= want[u] > parts[u].samples;
-    }
-    if (!any) want = most_needed(parts);
-    // Those that have least follow those that have most.
-    const uint32_t most = *std::max_element(want.begin(), want.end()), least = std::min(most / kMostTimes, kFirstPass);
-    for (size_t u = 0; u < want.size(); ++u) {
-      if (want[u] < least) want[u] = std::max(want[u], std::min(2 * parts[u].samples, request_.max_samples));
-    }
-    return want;
+    const double sum = sum_at(std::max(aim, claim_.value * M_SQRT1_2));
+    std::vector<uint32_t> want = next_samples(parts, sum, request_.max_samples, kFirstPass);
+    // The claim may be of fewer pixels than the sum: where that is reached already, an eighth of the picture goes on.
+    return added(want) > 0 ? want : neediest_eighth(parts);
   }
 
-  /// Units by how much of the variance each further sample takes away, the most first.
-  static std::vector<size_t> by_need(const std::vector<Allotment>& parts) {
-    std::vector<size_t> order(parts.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    const auto need = [&](size_t u) {
-      const double n = parts[u].samples;
-      return parts[u].area > 0 ? parts[u].variance / (parts[u].area * n * n) : 0.0;
-    };
-    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return need(a) > need(b); });
-    return order;
-  }
-
-  std::vector<uint32_t> most_needed(const std::vector<Allotment>& parts) const {
+  std::vector<uint32_t> neediest_eighth(const std::vector<Allotment>& parts) const {
     std::vector<uint32_t> want;
     for (const Allotment& p : parts) want.push_back(p.samples);
     double area = 0;
@@ -341,39 +288,19 @@ class TargetRender {
   ErrorClaim claim_{std::numeric_limits<double>::infinity(), 0, std::numeric_limits<double>::infinity(), 0};
   FilmRender film_;
   std::vector<FilmRender::Unit> units_;
-  std::vector<double> areas_;  ///< Pixels of each unit.
-  double pixels_ = 0;
+  UnitNoise noise_;
+  const std::span<const double> areas_;  ///< Pixels of each unit.
+  const double pixels_;
   double rate_ = 0;  ///< Seconds per sample and pixel.
   bool written_ = false;
   Picture picture_;
   Doubts doubts_;
   int tests_ = 0;
+  double doubted_at_ = 0;  ///< Samples over all pixels when doubts were found last.
   TargetOutcome out_;
 };
 
 }  // namespace
-
-std::vector<double> allot(std::span<const Allotment> parts, double sum, double most) {
-  std::vector<double> n(parts.size());
-  const auto at = [&](double scale) {
-    double total = 0;
-    for (size_t k = 0; k < parts.size(); ++k) {
-      const Allotment& p = parts[k];
-      const double root = p.area > 0 ? std::sqrt(p.variance / p.area) : 0.0;
-      n[k] = std::clamp(scale * root, static_cast<double>(p.samples), std::max(most, static_cast<double>(p.samples)));
-      if (p.variance > 0) total += p.variance / n[k];
-    }
-    return total;
-  };
-  // The sum falls as the scale grows: halve the interval of its logarithm, over all that is possible.
-  double low = -300, high = 300;
-  for (int step = 0; step < 100; ++step) {
-    const double middle = 0.5 * (low + high);
-    (at(std::exp2(middle)) > sum ? low : high) = middle;
-  }
-  at(std::exp2(high));
-  return n;
-}
 
 TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed) {
   Diagnostics said;

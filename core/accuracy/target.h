@@ -12,8 +12,6 @@
 #include <chrono>
 #include <functional>
 #include <optional>
-#include <span>
-#include <vector>
 
 #include "core/accuracy/film_error.h"
 #include "core/session/session.h"
@@ -52,16 +50,5 @@ struct TargetOutcome {
 /// Renders until the target is met or there is no more time. Sets the world's samples (set_samples()) where its sampler
 /// cannot go on beyond its number.
 TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed);
-
-/// A part of the film and what is known of its noise.
-struct Allotment {
-  double area = 0;       ///< Pixels.
-  double variance = 0;   ///< Of one sample, summed over its pixels and channels.
-  uint32_t samples = 0;  ///< Per pixel so far.
-};
-
-/// The numbers of samples at which the sum of variance / samples is `sum` with the fewest samples: in proportion to the
-/// root of the variance per pixel (Neyman, 1934), and never fewer than there are nor more than `most`.
-std::vector<double> allot(std::span<const Allotment> parts, double sum, double most);
 
 }  // namespace whit

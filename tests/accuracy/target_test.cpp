@@ -9,25 +9,6 @@
 namespace whit {
 namespace {
 
-TEST(Allot, IsInProportionToTheRootOfTheVariance) {
-  const Allotment parts[] = {{1, 1, 1}, {1, 9, 1}, {2, 18, 1}};
-  // n = s sqrt(variance / area): s, 3 s and 3 s. Their sum of variance / n is (1 + 3 + 6) / s.
-  const std::vector<double> n = allot(parts, 0.1, 1e9);
-  EXPECT_NEAR(n[0], 100, 1e-6);
-  EXPECT_NEAR(n[1], 300, 1e-6);
-  EXPECT_NEAR(n[2], 300, 1e-6);
-}
-
-TEST(Allot, TakesNoneAwayAndKeepsToTheMost) {
-  // The root of the first's variance is a thousandth of the second's: at the second's 1000 samples it wants one.
-  const Allotment parts[] = {{1, 0.0001, 64}, {1, 100, 64}, {1, 0, 64}};
-  const std::vector<double> n = allot(parts, 0.0001 / 64 + 0.1, 1e9);
-  EXPECT_EQ(n[0], 64);
-  EXPECT_NEAR(n[1], 1000, 1e-6);
-  EXPECT_EQ(n[2], 64);
-  EXPECT_EQ(allot(parts, 1e-9, 128)[1], 128);
-}
-
 /// A ball on a floor under a small lamp and a wide one, on the left; black on the right.
 struct World {
   ParsedFile file;
