@@ -192,14 +192,15 @@ std::string circles(const CostReport& report) {
 std::string worst_table(const CostReport& report) {
   if (report.worst.empty()) return "";
   std::string out =
-      "<div class=\"card scroll\"><table>\n<thead><tr><th class=\"left\">pixel</th><th>of the squared "
-      "error</th><th class=\"left\">what is there</th><th class=\"left\">light</th></tr></thead>\n<tbody>\n";
+      "<div class=\"card scroll\"><table>\n<thead><tr><th>share of the squared "
+      "error</th><th class=\"left\">of</th><th class=\"left\">light</th><th class=\"left\">worst "
+      "pixel</th></tr></thead>\n<tbody>\n";
   for (size_t i = 0; i < std::min(kShownWorst, report.worst.size()); ++i) {
     const CostWorst& w = report.worst[i];
-    out += "<tr>" + cell("left", fmt::format("({}, {})", w.pixel.x, w.pixel.y)) +
-           cell("", html_text(percent_text(w.share))) +
+    out += "<tr>" + cell("", html_text(percent_text(w.share))) +
            cell("left text", w.shape.empty() ? "nothing: rays leave the scene" : html_text(w.shape)) +
-           cell("left text", html_text(w.light)) + "</tr>\n";
+           cell("left text", html_text(w.light)) + cell("left", fmt::format("({}, {})", w.pixel.x, w.pixel.y)) +
+           "</tr>\n";
   }
   return out + "</tbody></table></div>\n";
 }
@@ -214,7 +215,7 @@ std::string where_error_is(const CostReport& report) {
   if (report.half_error_pixels > 0 && all > 0)
     out += fmt::format(
         "<p class=\"lead\">Half of the squared error is in {} pixels, {} of all. Circles mark the worst "
-        "{}.</p>\n",
+        "pixels of the {} things that carry most.</p>\n",
         report.half_error_pixels, percent_text(double(report.half_error_pixels) / all),
         std::min(kShownWorst, report.worst.size()));
   out += "<div class=\"pair\">\n";

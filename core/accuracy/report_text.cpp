@@ -214,9 +214,10 @@ std::string worst_text(const CostReport& report, int columns) {
   constexpr size_t kShown = 5;
   for (size_t i = 0; i < std::min(kShown, report.worst.size()); ++i) {
     const CostWorst& w = report.worst[i];
-    std::string line = fmt::format("  ({}, {}) has {}", w.pixel.x, w.pixel.y, percent_text(w.share));
-    line += w.shape.empty() ? ", where rays leave the scene" : ", on " + one_line(w.shape);
-    if (!w.light.empty()) line += ", by " + one_line(w.light);
+    std::string line = fmt::format("  {} of all is {}", percent_text(w.share),
+                                   w.shape.empty() ? "where rays leave the scene" : "on " + one_line(w.shape));
+    if (!w.light.empty()) line += " by " + one_line(w.light);
+    line += fmt::format(", most of it at ({}, {})", w.pixel.x, w.pixel.y);
     out += wrapped(line, columns, 4);
   }
   return out + "\n";

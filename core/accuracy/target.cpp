@@ -202,9 +202,16 @@ class TargetRender {
     if (is_far_above(variance, confidence)) return false;
     doubts_ = doubts_of(picture_, variance), doubted_at_ = samples();
     claim_ = claim_error(picture_, variance, doubts_, confidence);
-    if (!(claim_.value <= request_.error)) return false;
+    if (!(claim_.value <= request_.error) || !are_enough()) return false;
     ++tests_;
     return claim_.high <= request_.error;
+  }
+
+  /// Four samples of each pixel may all miss what carries the light: a test takes 8 of all, or 16 somewhere.
+  bool are_enough() const {
+    const auto [least, most] = std::minmax_element(units_.begin(), units_.end(),
+                                                   [](const auto& a, const auto& b) { return a.samples < b.samples; });
+    return least->samples >= std::min(8u, request_.max_samples) || most->samples >= 16;
   }
 
   /// Doubts take longer to find than some passes take. What is noisiest may be doubted, so they are found now and then.
@@ -227,8 +234,10 @@ class TargetRender {
     // One doubling ahead and no further: errors of nets fall faster than their first blocks say.
     const double sum = sum_at(std::max(aim, claim_.value * M_SQRT1_2));
     std::vector<uint32_t> want = next_samples(parts, sum, request_.max_samples, kFirstPass);
+    if (added(want) > 0) return want;
+    if (!are_enough()) return std::vector<uint32_t>(parts.size(), std::min(2 * kFirstLook, request_.max_samples));
     // The claim may be of fewer pixels than the sum: where that is reached already, an eighth of the picture goes on.
-    return added(want) > 0 ? want : neediest_eighth(parts);
+    return neediest_eighth(parts);
   }
 
   std::vector<uint32_t> neediest_eighth(const std::vector<Allotment>& parts) const {

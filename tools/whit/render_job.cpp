@@ -35,6 +35,7 @@ class RenderJob {
 
   int run() {
     const std::string problem = override_worlds(file_, settings_.effects.overrides);
+    if (problem.empty() && settings_.target.any()) use_extending_samplers(settings_, file_);
     times_.parse = file_.elapsed;
     // A file with mistakes is reported whole: also what planning would have said of it.
     reported_whole_ = file_.said.has_errors();

@@ -6,6 +6,9 @@
 #include <optional>
 
 #include "core/image/atomic_file.h"
+#include "core/plugin/registry.h"
+#include "core/plugin/sampler.h"
+#include "core/session/overrides.h"
 #include "tools/whit/json.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
@@ -25,8 +28,9 @@ std::string doubts_text(const Doubts& doubts) {
   std::string where;
   for (const Vec2i& p : doubts.densest) where += fmt::format("{}{},{}", where.empty() ? "" : "; ", p.x, p.y);
   return fmt::format(
-      "\n{} pixels ({}) are not trusted, beside much brighter ones or much quieter than their surroundings, and left "
-      "out of it: most around {}.",
+      "\n{} pixels ({}) are not trusted and left out of it: beside much brighter ones, or much quieter than those "
+      "around\n"
+      "them; most around {}.",
       doubts.count, share_text(share), where);
 }
 
@@ -61,7 +65,27 @@ Json json_of(const RenderSettings& settings, const TargetOutcome& o, double seco
   return j;
 }
 
+/// Samples at fixed places are not what another sampler's tend to.
+bool has_fixed_places(const Entity& sampler) {
+  for (const Parameter& p : sampler.params) {
+    const bool truth = p.type == ParamType::Bool && !p.bools().empty() && p.bools()[0] != 0;
+    if ((p.name == "samplepixelcenter" && truth) || (p.name == "jitter" && !truth)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+void use_extending_samplers(const RenderSettings& settings, ParsedFile& file) {
+  for (SceneDescription& world : file.worlds) {
+    const std::string name = sampler_in_force(world).name;
+    const std::unique_ptr<Plugin> made = sampler_in_force(world).make();
+    if (static_cast<const Sampler&>(*made).extends() || has_fixed_places(world.sampler)) continue;
+    override_world(world,
+                   {.integrator = {}, .sampler = "sobol", .max_depth = {}, .rr_threshold = {}, .texture_filter = {}});
+    if (!settings.quiet) say(fmt::format("sampled by sobol: samples of {} cannot go on beyond their number", name));
+  }
+}
 
 TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world, RenderOptions options,
                                std::chrono::steady_clock::time_point started,

@@ -8,6 +8,10 @@
 
 namespace whit {
 
+/// Gives worlds whose sampler has sets of a number of samples one that goes on, sobol, which has the same limit; but where
+/// samples lie at places that were asked for. Says so unless quiet.
+void use_extending_samplers(const RenderSettings& settings, ParsedFile& file);
+
 /// Renders as far as the flags say; `started` is when the time limit began to run, `write` writes a picture and returns
 /// the seconds that took.
 TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world, RenderOptions options,
