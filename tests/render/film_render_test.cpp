@@ -34,13 +34,15 @@ const char* const kGaussian = "PixelFilter \"gaussian\" \"float xwidth\" [2] \"f
 
 TEST(FilmRender, PassesAreOnePicture) {
   for (const char* filter : {"", kGaussian}) {
-    const World of = world(filter);
-    FilmRender once(of.scene(), {}), twice(of.scene(), {}), blocks(of.scene(), {.threads = 1, .blocks = true});
-    ASSERT_TRUE(once.extend(256));
-    ASSERT_TRUE(twice.extend(64) && twice.extend(256));
-    ASSERT_TRUE(blocks.extend(128) && blocks.extend(256));
-    EXPECT_EQ(once.picture().rgb, twice.picture().rgb) << filter;
-    EXPECT_EQ(once.picture().rgb, blocks.picture().rgb) << filter;
+    for (const char* sampler : {"random", "sobol", "02sequence"}) {
+      const World of = world(filter, sampler);
+      FilmRender once(of.scene(), {}), twice(of.scene(), {}), blocks(of.scene(), {.threads = 1, .blocks = true});
+      ASSERT_TRUE(once.extend(256));
+      ASSERT_TRUE(twice.extend(64) && twice.extend(256));
+      ASSERT_TRUE(blocks.extend(128) && blocks.extend(256));
+      EXPECT_EQ(once.picture().rgb, twice.picture().rgb) << filter << sampler;
+      EXPECT_EQ(once.picture().rgb, blocks.picture().rgb) << filter << sampler;
+    }
   }
 }
 
