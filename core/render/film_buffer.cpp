@@ -80,8 +80,11 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
   for_lanes(n, [&](int i) {
     const int x = static_cast<int>(std::floor(film_x[i])), y = static_cast<int>(std::floor(film_y[i]));
     const bool inside = reach.holds(x, y) & (usable[i] != 0);
-    cell[i] = inside ? reach.number(x, y) * kBlocks + (block ? block[i] : 0) : -1;
+    cell[i] = inside ? reach.number(x, y) * kBlocks : -1;
   });
+  for (int i = 0; block && i < n; ++i) {
+    if (cell[i] >= 0) cell[i] += block[i];
+  }
   cell[n] = -2;
   const double w = reach_.filter().weight(0, 0);
   for (int i = 0; i < n;) {

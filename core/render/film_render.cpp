@@ -57,16 +57,6 @@ TileGrid grid_over(const Box2i& pixels, bool adaptive) {
   return grid;
 }
 
-/// Samples on their way into a chunk, and which unit and block each belongs to.
-struct Chunk {
-  int n = 0;
-  int32_t px[kChunk], py[kChunk];
-  uint32_t index[kChunk];
-  uint8_t block[kChunk];
-  /// The units in order, each up to where its samples end.
-  std::vector<std::pair<size_t, int>> runs;
-};
-
 /// What a pass adds to a unit: the samples [have, want), and in which blocks.
 struct UnitPass {
   uint32_t have = 0, want = 0;
@@ -75,6 +65,28 @@ struct UnitPass {
   uint8_t block(uint32_t sample) const {
     const uint64_t at = sample - have, of = want - have;
     return static_cast<uint8_t>(doubled ? 2 + 2 * at / of : TileSums::kBlocks * at / of);
+  }
+};
+
+/// Samples on their way into a chunk, and which unit and block each belongs to.
+struct Chunk {
+  int n = 0;
+  int32_t px[kChunk], py[kChunk];
+  uint32_t index[kChunk];
+  uint8_t block[kChunk];
+  /// The units in order, each up to where its samples end.
+  std::vector<std::pair<size_t, int>> runs;
+
+  /// Samples of a pixel from `first` on; there must be room.
+  void add(int x, int y, uint32_t first, int more) {
+    int32_t *const to_x = px + n, *const to_y = py + n;
+    uint32_t* const to = index + n;
+    for_lanes(more, [=](int i) { to_x[i] = x, to_y[i] = y, to[i] = first + static_cast<uint32_t>(i); });
+    n += more;
+  }
+  /// Of those that were added last.
+  void note_blocks(const UnitPass& pass, int more) {
+    for (int i = n - more; i < n; ++i) block[i] = pass.block(index[i]);
   }
 };
 
@@ -195,10 +207,12 @@ struct FilmRender::Impl {
       for (int y = pixels.min.y; y < pixels.max.y; ++y) {
         for (int x = pixels.min.x; x < pixels.max.x; ++x) {
           if (colour >= 0 && ((x + y) & 1) != colour) continue;
-          for (uint32_t s = first; s < last; ++s) {
-            chunk.px[chunk.n] = x, chunk.py[chunk.n] = y, chunk.index[chunk.n] = s;
-            chunk.block[chunk.n] = pass[u].block(s);
-            if (++chunk.n == kChunk) close_run(chunk, u), render_chunk(worker, chunk);
+          for (uint32_t s = first; s < last;) {
+            const auto more = static_cast<int>(std::min<uint32_t>(last - s, static_cast<uint32_t>(kChunk - chunk.n)));
+            chunk.add(x, y, s, more);
+            if (options.blocks) chunk.note_blocks(pass[u], more);
+            s += static_cast<uint32_t>(more);
+            if (chunk.n == kChunk) close_run(chunk, u), render_chunk(worker, chunk);
           }
         }
       }
