@@ -17,7 +17,7 @@ std::vector<float> shown(const Picture& picture, const DisplayTransform& display
 
 }  // namespace
 
-Estimate spread_of(std::vector<double> values) {
+Estimate median_and_ends(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   const size_t n = values.size();
@@ -27,7 +27,7 @@ Estimate spread_of(std::vector<double> values) {
 void set_seconds(const Elapsed& fixed, std::span<const Elapsed> spent, CostSetting& setting) {
   std::vector<double> wall, cpu;
   for (const Elapsed& one : spent) wall.push_back(fixed.wall + one.wall), cpu.push_back(fixed.cpu + one.cpu);
-  setting.seconds = spread_of(std::move(wall)), setting.cpu_seconds = spread_of(std::move(cpu));
+  setting.seconds = median_and_ends(std::move(wall)), setting.cpu_seconds = median_and_ends(std::move(cpu));
 }
 
 CostJudge::CostJudge(const CostLevels& levels, const DisplayTransform& display)

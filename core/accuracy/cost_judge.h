@@ -9,7 +9,7 @@
 namespace whit {
 
 /// Median, least and greatest.
-Estimate spread_of(std::vector<double> values);
+Estimate median_and_ends(std::vector<double> values);
 /// What a whole command takes, by what its samples took in each replicate.
 void set_seconds(const Elapsed& fixed, std::span<const Elapsed> spent, CostSetting& setting);
 

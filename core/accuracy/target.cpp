@@ -269,6 +269,7 @@ class TargetRender {
     out_.rendered.result = film_.result();
     out_.rendered.result.complete = out_.end != TargetEnd::Stopped;
     out_.samples_mean = samples() / pixels_;
+    out_.whole = std::all_of(units_.begin(), units_.end(), [](const auto& u) { return u.samples > 0; });
     if (out_.end != TargetEnd::Met) {
       const Picture& picture = out_.rendered.result.picture;
       const std::vector<float> variance = film_.variance();

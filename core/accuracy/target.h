@@ -45,6 +45,7 @@ struct TargetOutcome {
   ErrorClaim claim;  ///< Of the pixels that are not doubted.
   Doubts doubts;
   double samples_mean = 0;
+  bool whole = false;  ///< Every pixel has samples.
 };
 
 /// Renders until the target is met or there is no more time. Sets the world's samples (set_samples()) where its sampler

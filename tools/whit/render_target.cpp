@@ -134,7 +134,7 @@ int report_target(const RenderSettings& settings, const TargetOutcome& o, double
       }
     }
   }
-  const bool reached = o.end == TargetEnd::Met || (!has_target && o.samples_mean >= 1);
+  const bool reached = o.end == TargetEnd::Met || (!has_target && o.whole);
   return reached ? kDone : kLimit;
 }
 
