@@ -96,6 +96,20 @@ class Target(unittest.TestCase):
         self.assertEqual(done.returncode, 5, done.stderr)
         self.assertIn("error unknown", done.stderr)
 
+    def test_what_machines_do_not_get_is_exit_4(self):
+        with open("/dev/full", "w", encoding="utf-8") as full:
+            done = subprocess.run([WHIT, "scene.pbrt", "--target-error", "50%", "--quiet", "--json", "-"],
+                                  cwd=self.folder.name, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300,
+                                  check=False)
+        self.assertEqual(done.returncode, 4)
+        self.assertIn("cannot write to standard output", done.stderr)
+
+    def test_a_file_that_cannot_be_written_is_told_before_rendering(self):
+        done = self.run_whit("--target-error", "50%", "--json", "no folder/t.json")
+        self.assertEqual(done.returncode, 4)
+        self.assertIn('cannot write "no folder/t.json"', done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder.name, "picture.exr")))
+
     def test_wrong_usage(self):
         for flags, what in ((("--target-error", "none"), "--target-error"), (("--target-error", "-1%"), "--target-error"),
                             (("--time-limit", "5 parsecs"), "--time-limit"),

@@ -12,12 +12,11 @@
 
 #include "core/accuracy/cost.h"
 #include "core/accuracy/report.h"
-#include "core/image/atomic_file.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
 #include "tools/whit/quantities.h"
-#include "tools/whit/render_stats.h"
 #include "tools/whit/terminal.h"
+#include "tools/whit/text_file.h"
 
 namespace whit {
 namespace {
@@ -28,8 +27,6 @@ struct CostFlags {
   int threads = 0;
   uint32_t seed = 0;
 };
-
-bool is_stdout(const std::string& path) { return path == "-"; }
 
 /// "" or what is wrong with the flags.
 std::string usage_problem(const CostFlags& flags) {
@@ -44,7 +41,7 @@ std::string usage_problem(const CostFlags& flags) {
 /// The first of the files that cannot be written, or "".
 std::string file_problem(const CostFlags& flags) {
   for (const std::string& path : {flags.html, flags.json, flags.csv}) {
-    if (std::string problem = stats_file_problem(path); !problem.empty()) return problem;
+    if (std::string problem = text_file_problem(path); !problem.empty()) return problem;
   }
   return {};
 }
@@ -93,18 +90,6 @@ CostStudy study(const CostFlags& flags, const ParsedFile& file, CostRequest requ
 int columns_of(int file) {
   winsize size{};
   return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 100;
-}
-
-/// "" or why a text is not in its file.
-std::string write_text(const std::string& path, const std::string& text) {
-  if (is_stdout(path)) {
-    fmt::print("{}", text);
-    return std::fflush(stdout) == 0 ? "" : "cannot write to standard output";
-  }
-  AtomicFile file(path);
-  file.write_at(text.data(), text.size(), 0);
-  const std::string failure = file.commit();
-  return failure.empty() ? "" : fmt::format("cannot write {}: {}", path, failure);
 }
 
 /// Writes the report in all forms asked for; the table goes where it is in nobody's way.

@@ -7,8 +7,8 @@
 
 #include "tools/whit/command_line.h"
 #include "tools/whit/quantities.h"
-#include "tools/whit/render_stats.h"
 #include "tools/whit/terminal.h"
+#include "tools/whit/text_file.h"
 
 namespace whit {
 namespace {
@@ -151,7 +151,10 @@ std::string file_problem(const RenderSettings& s) {
   if (!s.log_dir.empty() && !std::filesystem::is_directory(s.log_dir)) {
     return fmt::format("--logdir: there is no folder \"{}\"", s.log_dir);
   }
-  return stats_file_problem(s.stats_file);
+  for (const std::string& file : {s.stats_file, s.target.json}) {
+    if (std::string problem = text_file_problem(file); !problem.empty()) return problem;
+  }
+  return {};
 }
 
 }  // namespace

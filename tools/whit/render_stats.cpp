@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/image/atomic_file.h"
 #include "core/plugin/registry.h"
 #include "tools/whit/terminal.h"
+#include "tools/whit/text_file.h"
 #include "tools/whit/version.h"
 
 namespace whit {
@@ -80,12 +80,6 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
 
 }  // namespace
 
-std::string stats_file_problem(const std::string& path) {
-  if (path.empty() || path == "-") return {};
-  const AtomicFile file(path);
-  return file.failure().empty() ? "" : fmt::format("cannot write \"{}\": {}", path, file.failure());
-}
-
 void RenderStats::add(const RenderSettings& settings, const std::string& scene, const RenderOutcome& outcome) {
   const RenderStatistics& s = outcome.result.statistics;
   pictures_.push_back(Json::Object{{"seconds", seconds(outcome.times, &Elapsed::wall)},
@@ -100,15 +94,7 @@ void RenderStats::add(const RenderSettings& settings, const std::string& scene, 
 
 std::string RenderStats::write(const std::string& path) const {
   if (path.empty() || pictures_.empty()) return {};
-  const std::string text = to_text(several_ ? Json(pictures_) : pictures_.front()) + '\n';
-  if (path == "-") {
-    fmt::print("{}", text);
-    return std::fflush(stdout) == 0 ? "" : "cannot write to standard output";
-  }
-  AtomicFile file(path);
-  file.write_at(text.data(), text.size(), 0);
-  const std::string problem = file.commit();
-  return problem.empty() ? "" : fmt::format("cannot write \"{}\": {}", path, problem);
+  return write_text(path, to_text(several_ ? Json(pictures_) : pictures_.front()) + '\n');
 }
 
 }  // namespace whit

@@ -9,9 +9,6 @@
 
 namespace whit {
 
-/// "" or why figures cannot be written to a file of that name, "" and "-" being none and standard output.
-std::string stats_file_problem(const std::string& path);
-
 /// The figures of every picture of a run.
 class RenderStats {
  public:

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <optional>
 
-#include "core/image/atomic_file.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/sampler.h"
 #include "core/session/overrides.h"
 #include "tools/whit/json.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
+#include "tools/whit/text_file.h"
 
 namespace whit {
 namespace {
@@ -122,16 +122,9 @@ int report_target(const RenderSettings& settings, const TargetOutcome& o, double
                     o.samples_mean, doubts_text(o.doubts)));
   }
   if (const std::string& file = settings.target.json; !file.empty()) {
-    const std::string text = to_text(json_of(settings, o, seconds)) + "\n";
-    if (file == "-") {
-      fmt::print("{}", text);
-    } else {
-      AtomicFile out(file);
-      out.write_at(text.data(), text.size(), 0);
-      if (const std::string problem = out.commit(); !problem.empty()) {
-        say(fmt::format("whit: cannot write \"{}\": {}", file, problem));
-        return kFileError;
-      }
+    if (const std::string problem = write_text(file, to_text(json_of(settings, o, seconds)) + '\n'); !problem.empty()) {
+      say("whit: " + problem);
+      return kFileError;
     }
   }
   const bool reached = o.end == TargetEnd::Met || (!has_target && o.whole);
