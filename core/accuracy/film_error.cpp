@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/accuracy/measures.h"
 #include "core/accuracy/quantiles.h"
 
 namespace whit {
@@ -151,10 +152,6 @@ Contributions contributions(const Picture& picture, std::span<const float> varia
 
 }  // namespace
 
-double mean_of(std::span<const float> rgb) {
-  return std::accumulate(rgb.begin(), rgb.end(), 0.0) / static_cast<double>(rgb.size());
-}
-
 Doubts find_doubts(const Picture& picture, std::span<const float> variance, std::span<const uint32_t> samples,
                    int reach) {
   const Grid grid(picture);
@@ -177,7 +174,7 @@ Doubts find_doubts(const Picture& picture, std::span<const float> variance, std:
 ErrorClaim claim_error(const Picture& picture, std::span<const float> variance, const Doubts& doubts,
                        double confidence) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const double mean = mean_of(picture.rgb), trusted = static_cast<double>(doubts.pixels.size()) - doubts.count;
+  const double mean = mean_radiance(picture.rgb), trusted = static_cast<double>(doubts.pixels.size()) - doubts.count;
   const Contributions v = contributions(picture, variance, doubts);
   if (!(mean > 0) || trusted == 0 || !std::isfinite(v.sum)) return {kInfinity, 0, kInfinity, 0};
   const double scale = 1 / (3 * trusted * mean * mean);

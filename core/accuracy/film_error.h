@@ -43,7 +43,4 @@ struct ErrorClaim {
 ErrorClaim claim_error(const Picture& picture, std::span<const float> variance, const Doubts& doubts,
                        double confidence);
 
-/// The mean over pixels and channels.
-double mean_of(std::span<const float> rgb);
-
 }  // namespace whit

@@ -13,11 +13,15 @@ Json interval(const char* middle, const Estimate& e) { return {{middle, e.value}
 
 Json range(const Estimate& e) { return {{"low", e.low}, {"high", e.high}}; }
 
+Json difference(const Estimate& e, bool resolved) {
+  Json json = interval("value", e);
+  json["resolved"] = resolved;
+  return json;
+}
+
 Json change_json(const CostChange& c) {
-  Json seconds = interval("value", c.seconds);
-  seconds["resolved"] = c.resolved;
   return {{"from", c.from},
-          {"seconds", seconds},
+          {"seconds", difference(c.seconds, c.resolved)},
           {"share", c.share},
           {"noise", c.noise ? interval("value", *c.noise) : Json()},
           {"mean_change", c.mean_change},
@@ -43,12 +47,10 @@ Json setting_json(const CostSetting& s) {
 }
 
 Json effect_json(const CostEffect& e) {
-  Json seconds = interval("value", e.seconds);
-  seconds["resolved"] = e.resolved;
   return {{"name", e.name},
           {"command", e.command},
           {"samples", e.samples},
-          {"seconds", seconds},
+          {"seconds", difference(e.seconds, e.resolved)},
           {"wall_seconds", interval("value", e.wall_seconds)},
           {"share", e.share},
           {"mean_change", e.mean_change},

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/accuracy/allotment.h"
+#include "core/accuracy/measures.h"
 #include "core/base/stopwatch.h"
 #include "core/render/film_render.h"
 
@@ -224,7 +225,7 @@ class TargetRender {
 
   /// The numbers of samples to have after the next pass.
   std::vector<uint32_t> next(const std::vector<Allotment>& parts) {
-    const double mean = mean_of(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
+    const double mean = mean_radiance(picture_.rgb), pixels = static_cast<double>(doubts_.pixels.size());
     const auto sum_at = [&](double error) { return 3 * pixels * error * error * mean * mean; };
     const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
     const double aim = 0.97 * sure * request_.error;

@@ -1,7 +1,6 @@
 // `whit cost`: what accuracy costs in time, for the scene at hand.
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -20,6 +19,8 @@
 
 namespace whit {
 namespace {
+
+constexpr int kColumns = 100;  ///< Of a report where there is no terminal.
 
 struct CostFlags {
   std::string scene, time = "60s", html, json, csv;
@@ -86,12 +87,6 @@ CostStudy study(const CostFlags& flags, const ParsedFile& file, CostRequest requ
   return study_cost(file, 0, request);
 }
 
-/// The width of a terminal; 100 where there is none.
-int columns_of(int file) {
-  winsize size{};
-  return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 100;
-}
-
 /// Writes the report in all forms asked for; the table goes where it is in nobody's way.
 int write_report(const CostFlags& flags, const CostReport& report) {
   int code = kDone;
@@ -105,8 +100,8 @@ int write_report(const CostFlags& flags, const CostReport& report) {
   if (!flags.csv.empty()) write(flags.csv, cost_csv(report));
   if (!flags.html.empty()) write(flags.html, cost_html(report));
   const bool taken = is_stdout(flags.html) || is_stdout(flags.json) || is_stdout(flags.csv);
-  if (taken) fmt::print(stderr, "{}", cost_text(report, use_colour(), columns_of(STDERR_FILENO)));
-  else write("-", cost_text(report, use_colour() && isatty(STDOUT_FILENO) != 0, columns_of(STDOUT_FILENO)));
+  if (taken) fmt::print(stderr, "{}", cost_text(report, use_colour(), columns_of(STDERR_FILENO, kColumns)));
+  else write("-", cost_text(report, use_colour() && isatty(STDOUT_FILENO) != 0, columns_of(STDOUT_FILENO, kColumns)));
   return code;
 }
 

@@ -1,7 +1,5 @@
 #include "tools/whit/quantities.h"
 
-#include <fmt/format.h>
-
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -37,12 +35,5 @@ double duration_of(const std::string& text) {
 }
 
 double share_of(const std::string& text) { return quantity(text, {{""}, {"%", 1, 100}}); }
-
-std::string share_text(double share) {
-  if (!std::isfinite(share)) return "unknown";
-  const double percent = 100 * share;
-  const int digits = percent <= 0 ? 0 : std::max(0, 1 - static_cast<int>(std::floor(std::log10(percent))) + 1);
-  return fmt::format("{:.{}f} %", percent, std::min(digits, 8));
-}
 
 }  // namespace whit

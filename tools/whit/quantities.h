@@ -11,7 +11,4 @@ double duration_of(const std::string& text);
 /// The share of "1%", "0.5 %" or "0.01"; 0 where it is none above 0.
 double share_of(const std::string& text);
 
-/// "0.94 %", with as many digits as say something.
-std::string share_text(double share);
-
 }  // namespace whit

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/accuracy/report_words.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/sampler.h"
 #include "core/session/overrides.h"
@@ -18,7 +19,7 @@ namespace {
 
 /// "0.94 % [0.81 %, 1.00 %]".
 std::string claim_text(const ErrorClaim& claim) {
-  return fmt::format("{} [{}, {}]", share_text(claim.value), share_text(claim.low), share_text(claim.high));
+  return fmt::format("{} [{}, {}]", percent_text(claim.value), percent_text(claim.low), percent_text(claim.high));
 }
 
 /// What the claim leaves out.
@@ -31,7 +32,7 @@ std::string doubts_text(const Doubts& doubts) {
       "\n{} pixels ({}) are not trusted and left out of it: beside much brighter ones, or much quieter than those "
       "around\n"
       "them; most around {}.",
-      doubts.count, share_text(share), where);
+      doubts.count, percent_text(share), where);
 }
 
 const char* end_text(const TargetOutcome& o, bool has_target) {
@@ -44,20 +45,17 @@ const char* end_text(const TargetOutcome& o, bool has_target) {
   return "";
 }
 
-/// Numbers that JSON has; null else.
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(); }
-
+/// Numbers that are not finite are written as null.
 Json json_of(const RenderSettings& settings, const TargetOutcome& o, double seconds) {
-  Json::Object j{{"target", settings.target.error.empty() ? Json() : Json(share_of(settings.target.error))},
-                 {"confidence", share_of(settings.target.confidence)},
-                 {"achieved", Json::Object{{"value", number(o.claim.value)},
-                                           {"lower95", number(o.claim.low)},
-                                           {"upper95", number(o.claim.high)}}},
-                 {"met", o.end == TargetEnd::Met},
-                 {"end", end_text(o, !settings.target.error.empty())},
-                 {"samples_mean", o.samples_mean},
-                 {"untrusted_pixels", o.doubts.count},
-                 {"seconds", seconds}};
+  Json::Object j{
+      {"target", settings.target.error.empty() ? Json() : Json(share_of(settings.target.error))},
+      {"confidence", share_of(settings.target.confidence)},
+      {"achieved", Json::Object{{"value", o.claim.value}, {"lower95", o.claim.low}, {"upper95", o.claim.high}}},
+      {"met", o.end == TargetEnd::Met},
+      {"end", end_text(o, !settings.target.error.empty())},
+      {"samples_mean", o.samples_mean},
+      {"untrusted_pixels", o.doubts.count},
+      {"seconds", seconds}};
   if (o.doubts.count > 0) {
     const Box2i& w = o.doubts.where;
     j.emplace_back("untrusted_window", Json::Array{w.min.x, w.min.y, w.max.x + 1, w.max.y + 1});
@@ -81,8 +79,9 @@ void use_extending_samplers(const RenderSettings& settings, ParsedFile& file) {
     const std::string name = sampler_in_force(world).name;
     const std::unique_ptr<Plugin> made = sampler_in_force(world).make();
     if (static_cast<const Sampler&>(*made).extends() || has_fixed_places(world.sampler)) continue;
-    override_world(world,
-                   {.integrator = {}, .sampler = "sobol", .max_depth = {}, .rr_threshold = {}, .texture_filter = {}});
+    Overrides sobol;
+    sobol.sampler = "sobol";
+    override_world(world, sobol);
     if (!settings.quiet) say(fmt::format("sampled by sobol: samples of {} cannot go on beyond their number", name));
   }
 }
@@ -106,7 +105,7 @@ TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world
   request.progress = [&](const TargetState& state) {
     if (!progress) return true;
     const std::string error =
-        std::isfinite(state.claim.value) ? fmt::format(", error {}", share_text(state.claim.value)) : "";
+        std::isfinite(state.claim.value) ? fmt::format(", error {}", percent_text(state.claim.value)) : "";
     progress->update(state.share, "rendering" + error);
     return true;
   };
@@ -115,11 +114,10 @@ TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world
 
 int report_target(const RenderSettings& settings, const TargetOutcome& o, double seconds) {
   const bool has_target = !settings.target.error.empty();
-  const bool black = std::isinf(o.claim.value) && !std::isinf(o.claim.low);
   if (!settings.quiet) {
     say(fmt::format("{}: {}, nRMSE, {} sure; {:.1f} samples per pixel.{}", end_text(o, has_target),
-                    black ? "error unknown" : "error " + claim_text(o.claim), settings.target.confidence,
-                    o.samples_mean, doubts_text(o.doubts)));
+                    std::isinf(o.claim.value) ? "error unknown" : "error " + claim_text(o.claim),
+                    settings.target.confidence, o.samples_mean, doubts_text(o.doubts)));
   }
   if (const std::string& file = settings.target.json; !file.empty()) {
     if (const std::string problem = write_text(file, to_text(json_of(settings, o, seconds)) + '\n'); !problem.empty()) {

@@ -95,6 +95,11 @@ Diagnostics unexcused(const Diagnostics& diagnostics) {
   return out;
 }
 
+int columns_of(int file, int otherwise) {
+  winsize size{};
+  return ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : otherwise;
+}
+
 Progress::Progress(std::string what)
     : what_(std::move(what)), terminal_(isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
 
@@ -123,8 +128,7 @@ void Progress::update(double share, std::string what) {
 }
 
 void Progress::draw(double share, double seconds) const {
-  winsize size{};
-  const int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+  const int columns = columns_of(STDERR_FILENO, 80);
   const std::string tail = fmt::format(" {:3.0f} %  {}  {} left", 100 * share, duration_text(seconds),
                                        duration_text(share > 0.01 ? seconds * (1 - share) / share : 0));
   const int width = std::max(4, columns - static_cast<int>(what_.size() + tail.size()) - 4);

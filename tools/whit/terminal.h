@@ -12,6 +12,9 @@ namespace whit {
 /// True when stderr is a terminal and NO_COLOR is not set.
 bool use_colour();
 
+/// How many characters a line of a terminal has; `otherwise` where the file is none.
+int columns_of(int file, int otherwise);
+
 /// Prints a line, or several, to stderr, with control characters escaped.
 void say(const std::string& text);
 
