@@ -13,14 +13,6 @@ constexpr uint32_t kMostTimes = 32;
 
 size_t doublings(uint32_t samples) { return samples > 0 ? static_cast<size_t>(std::bit_width(samples)) - 1 : 0; }
 
-double area_of(const FilmRender::Unit& u) {
-  double area = 0;
-  for (int y = u.pixels.min.y; y < u.pixels.max.y; ++y) {
-    for (int x = u.pixels.min.x; x < u.pixels.max.x; ++x) area += u.holds(x, y);
-  }
-  return area;
-}
-
 /// Calls body(channels' variances together) for the pixels of a unit's tile that are known, of its colour or of all.
 template <class Body>
 void each_variance(const FilmRender::Unit& unit, std::span<const float> variance, const Box2i& window, bool own,
@@ -97,7 +89,7 @@ std::vector<uint32_t> next_samples(std::span<const Allotment> parts, double sum,
 }
 
 UnitNoise::UnitNoise(std::span<const FilmRender::Unit> units) : known_(units.size()) {
-  for (const FilmRender::Unit& u : units) areas_.push_back(area_of(u));
+  for (const FilmRender::Unit& u : units) areas_.push_back(static_cast<double>(u.area()));
 }
 
 void UnitNoise::look(const FilmRender& film, std::span<const FilmRender::Unit> units, std::span<const float> variance,

@@ -24,9 +24,8 @@ struct Look {
 bool add_pair(CostWorld& base, CostWorld& variant, int samples, uint32_t seed, CostPairs& pairs) {
   Look one(base, samples, seed), other(variant, samples, seed);
   FilmRender* const films[] = {one.film.get(), other.film.get()};
-  const std::vector<uint32_t> counts(one.film->units().size(), other.samples);
   const Stopwatch watch;
-  if (!FilmRender::extend_in_turn(films, counts)) return false;
+  if (!FilmRender::extend_in_turn(films, other.samples)) return false;
   // The clock on the wall saw both; each gets its share by what the processor did for it.
   const double wall = watch.elapsed().wall, a = one.film->cpu_seconds(), b = other.film->cpu_seconds();
   const double share = a + b > 0 ? a / (a + b) : 0.5;

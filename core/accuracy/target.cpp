@@ -129,30 +129,28 @@ class TargetRender {
 
   /// By a first look, which is no test of anything.
   uint32_t samples_of_first_pass() {
-    picture_ = film_.picture();
-    const std::vector<float> variance = film_.variance();
-    noise_.look(film_, units_, variance, picture_.window, reach_);
-    const ErrorClaim claim = claim_error(picture_, variance, doubts_of(picture_, variance), request_.confidence);
+    observe();
+    const ErrorClaim claim = claim_error(picture_, variance_, doubts_now(), request_.confidence);
     const double times = claim.value / request_.error;
     const double samples = kFirstShare * kFirstLook * times * times;
     if (!(samples < kFirstPass)) return kFirstPass;
     return std::max(kFirstLook, std::bit_floor(static_cast<uint32_t>(samples)));
   }
 
-  Doubts doubts_of(const Picture& picture, const std::vector<float>& variance) const {
-    const Box2i& window = picture.window;
-    std::vector<uint32_t> samples(variance.size() / 3);
+  Doubts doubts_now() const {
+    const Box2i& window = picture_.window;
+    std::vector<uint32_t> samples(variance_.size() / 3);
     for (const FilmRender::Unit& u : units_) {
       for (int y = std::max(u.pixels.min.y, window.min.y); y < std::min(u.pixels.max.y, window.max.y); ++y) {
         for (int x = std::max(u.pixels.min.x, window.min.x); x < std::min(u.pixels.max.x, window.max.x); ++x) {
           if (!u.holds(x, y)) continue;
           const Vec2i at = Vec2i(x, y) - window.min;
-          samples[static_cast<size_t>(at.y) * static_cast<size_t>(picture.width()) + static_cast<size_t>(at.x)] =
+          samples[static_cast<size_t>(at.y) * static_cast<size_t>(picture_.width()) + static_cast<size_t>(at.x)] =
               u.samples;
         }
       }
     }
-    return find_doubts(picture, variance, samples, reach_);
+    return find_doubts(picture_, variance_, samples, reach_);
   }
 
   void write_early() {
@@ -178,6 +176,13 @@ class TargetRender {
 
   // ---- Looks ----
 
+  /// What the film says now, if that is not known.
+  void observe() {
+    if (observed_at_ == samples()) return;
+    picture_ = film_.picture(), variance_ = film_.variance(), observed_at_ = samples();
+    if (request_.error > 0) noise_.look(film_, units_, variance_, picture_.window, reach_);
+  }
+
   /// Looks, and adds samples where they are needed, until the target is met.
   TargetEnd approach() {
     while (true) {
@@ -196,13 +201,11 @@ class TargetRender {
   /// Whether the error is below the target. Only estimates that are get a test, and each its own part of the confidence,
   /// so that all together are wrong as seldom as is asked for: the k-th a k (k + 1)-th of it.
   bool look() {
-    picture_ = film_.picture();
-    const std::vector<float> variance = film_.variance();
-    noise_.look(film_, units_, variance, picture_.window, reach_);
+    observe();
     const double n = tests_ + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
-    if (is_far_above(variance, confidence)) return false;
-    doubts_ = doubts_of(picture_, variance), doubted_at_ = samples();
-    claim_ = claim_error(picture_, variance, doubts_, confidence);
+    if (is_far_above(confidence)) return false;
+    doubts_ = doubts_now(), doubted_at_ = samples();
+    claim_ = claim_error(picture_, variance_, doubts_, confidence);
     if (!(claim_.value <= request_.error) || !are_enough()) return false;
     ++tests_;
     return claim_.high <= request_.error;
@@ -216,10 +219,10 @@ class TargetRender {
   }
 
   /// Doubts take longer to find than some passes take. What is noisiest may be doubted, so they are found now and then.
-  bool is_far_above(const std::vector<float>& variance, double confidence) {
+  bool is_far_above(double confidence) {
     if (samples() >= 2 * doubted_at_) return false;
-    doubts_ = {std::vector<uint8_t>(variance.size() / 3), 0, {}, {}};
-    claim_ = claim_error(picture_, variance, doubts_, confidence);
+    doubts_ = {std::vector<uint8_t>(variance_.size() / 3), 0, {}, {}};
+    claim_ = claim_error(picture_, variance_, doubts_, confidence);
     return claim_.value > kFarAbove * request_.error;
   }
 
@@ -241,9 +244,14 @@ class TargetRender {
     return neediest_eighth(parts);
   }
 
+  static std::vector<uint32_t> as_they_are(const std::vector<Allotment>& parts) {
+    std::vector<uint32_t> samples;
+    for (const Allotment& p : parts) samples.push_back(p.samples);
+    return samples;
+  }
+
   std::vector<uint32_t> neediest_eighth(const std::vector<Allotment>& parts) const {
-    std::vector<uint32_t> want;
-    for (const Allotment& p : parts) want.push_back(p.samples);
+    std::vector<uint32_t> want = as_they_are(parts);
     double area = 0;
     for (const size_t u : by_need(parts)) {
       if (area >= pixels_ / 8 || parts[u].variance == 0) break;
@@ -255,8 +263,7 @@ class TargetRender {
 
   /// As much of a pass as there is time for, what is needed most first.
   std::vector<uint32_t> what_fits(const std::vector<Allotment>& parts, const std::vector<uint32_t>& wanted) const {
-    std::vector<uint32_t> want;
-    for (const Allotment& p : parts) want.push_back(p.samples);
+    std::vector<uint32_t> want = as_they_are(parts);
     double left = seconds_until(deadline_) / std::max(rate_, 1e-30);
     for (const size_t u : by_need(parts)) {
       left -= areas_[u] * (wanted[u] - parts[u].samples);
@@ -269,13 +276,11 @@ class TargetRender {
   void finish() {
     out_.rendered.result = film_.result();
     out_.rendered.result.complete = out_.end != TargetEnd::Stopped;
-    out_.samples_mean = samples() / pixels_;
     out_.whole = std::all_of(units_.begin(), units_.end(), [](const auto& u) { return u.samples > 0; });
     if (out_.end != TargetEnd::Met) {
-      const Picture& picture = out_.rendered.result.picture;
-      const std::vector<float> variance = film_.variance();
-      doubts_ = doubts_of(picture, variance);
-      claim_ = claim_error(picture, variance, doubts_, request_.confidence);
+      observe();
+      doubts_ = doubts_now();
+      claim_ = claim_error(picture_, variance_, doubts_, request_.confidence);
     }
     out_.claim = claim_, out_.doubts = std::move(doubts_);
     for (AovPicture::Channel& channel : out_.rendered.result.aovs.channels) {
@@ -304,7 +309,9 @@ class TargetRender {
   const double pixels_;
   double rate_ = 0;  ///< Seconds per sample and pixel.
   bool written_ = false;
-  Picture picture_;
+  double observed_at_ = -1;  ///< Samples over all pixels when the film was observed last,
+  Picture picture_;          ///< and what it said.
+  std::vector<float> variance_;
   Doubts doubts_;
   int tests_ = 0;
   double doubted_at_ = 0;  ///< Samples over all pixels when doubts were found last.

@@ -44,7 +44,6 @@ struct TargetOutcome {
   TargetEnd end = TargetEnd::Stopped;
   ErrorClaim claim;  ///< Of the pixels that are not doubted.
   Doubts doubts;
-  double samples_mean = 0;
   bool whole = false;  ///< Every pixel has samples.
 };
 

@@ -160,12 +160,15 @@ struct FilmRender::Impl {
 
   // ---- Passes ----
 
+  /// So many samples for each unit.
+  std::vector<uint32_t> everywhere(uint32_t samples) const { return std::vector<uint32_t>(grid.units(), samples); }
+
   /// What is to be added to each unit. Units that have as many samples already get none.
   void begin_pass(std::span<const uint32_t> want) {
     pass.assign(grid.units(), {});
     tasks_done = 0;
     for (size_t u = 0; u < pass.size(); ++u) {
-      const uint32_t to = std::max(want.size() == 1 ? want[0] : want[u], have[u]);
+      const uint32_t to = std::max(want[u], have[u]);
       pass[u] = {have[u], to, options.blocks && have[u] > 0 && to == 2 * have[u]};
     }
   }
@@ -297,11 +300,12 @@ struct FilmRender::Impl {
     return w;
   }
 
+  Unit unit(size_t u) const { return {pixels_of(u), colour_of(u), have[u]}; }
+
   double samples_per_pixel() const {
     double samples = 0, pixels = 0;
     for (size_t u = 0; u < have.size(); ++u) {
-      const Vec2i size = pixels_of(u).max - pixels_of(u).min;
-      const double area = static_cast<double>(size.x) * size.y;  // of a colour nearly half of it
+      const auto area = static_cast<double>(unit(u).area());
       samples += area * have[u], pixels += area;
     }
     return pixels > 0 ? samples / pixels : 0.0;
@@ -334,7 +338,15 @@ FilmRender::FilmRender(const Scene& scene, const RenderOptions& options)
     : impl_(std::make_unique<Impl>(scene, options)) {}
 FilmRender::~FilmRender() = default;
 
-bool FilmRender::extend(uint32_t samples) { return extend(std::span(&samples, 1)); }
+int64_t FilmRender::Unit::area() const {
+  const Vec2i size = pixels.max - pixels.min;
+  if (size.x <= 0 || size.y <= 0) return 0;
+  const int64_t all = int64_t{size.x} * size.y;
+  // Of an odd number of pixels the corner's colour has one more.
+  return colour < 0 ? all : (all + (holds(pixels.min.x, pixels.min.y) ? 1 : 0)) / 2;
+}
+
+bool FilmRender::extend(uint32_t samples) { return extend(impl_->everywhere(samples)); }
 
 bool FilmRender::extend(std::span<const uint32_t> samples) {
   impl_->begin_pass(samples);
@@ -342,8 +354,8 @@ bool FilmRender::extend(std::span<const uint32_t> samples) {
   return extend_tasks(std::span(&self, 1));
 }
 
-bool FilmRender::extend_in_turn(std::span<FilmRender* const> films, std::span<const uint32_t> samples) {
-  for (FilmRender* film : films) film->impl_->begin_pass(samples);
+bool FilmRender::extend_in_turn(std::span<FilmRender* const> films, uint32_t samples) {
+  for (FilmRender* film : films) film->impl_->begin_pass(film->impl_->everywhere(samples));
   return extend_tasks(films);
 }
 
@@ -421,8 +433,7 @@ double FilmRender::cpu_seconds() const { return impl_->worker_seconds; }
 
 std::vector<FilmRender::Unit> FilmRender::units() const {
   std::vector<Unit> units;
-  for (size_t u = 0; u < impl_->have.size(); ++u)
-    units.push_back({impl_->pixels_of(u), impl_->colour_of(u), impl_->have[u]});
+  for (size_t u = 0; u < impl_->have.size(); ++u) units.push_back(impl_->unit(u));
   return units;
 }
 

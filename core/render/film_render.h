@@ -34,7 +34,7 @@ class FilmRender {
   bool extend(std::span<const uint32_t> samples);
   /// Extends several films of one size, tile by tile in turn, so that the machine's moods meet all alike. They must have
   /// the same pixels and kind of units.
-  static bool extend_in_turn(std::span<FilmRender* const> films, std::span<const uint32_t> samples);
+  static bool extend_in_turn(std::span<FilmRender* const> films, uint32_t samples);
 
   /// The picture by now, with AOVs and statistics. Passes may follow.
   RenderResult result() const;
@@ -54,6 +54,8 @@ class FilmRender {
     int colour = 0;        ///< Of the chessboard: pixels with (x + y) % 2 == colour; -1 for all.
     uint32_t samples = 0;  ///< Per pixel, so far.
     bool holds(int x, int y) const { return colour < 0 || ((x + y) & 1) == colour; }
+    /// Pixels that it holds.
+    int64_t area() const;
   };
   std::vector<Unit> units() const;
 

@@ -51,8 +51,7 @@ TEST(FilmRender, FilmsThatGrowInTurnAreThoseThatGrowAlone) {
   FilmRender alone(of.scene(), {}), a(of.scene(), {}), b(of.scene(), {});
   alone.extend(8);
   FilmRender* const films[] = {&a, &b};
-  const uint32_t samples[] = {8};
-  ASSERT_TRUE(FilmRender::extend_in_turn(films, samples));
+  ASSERT_TRUE(FilmRender::extend_in_turn(films, 8));
   EXPECT_EQ(a.picture().rgb, alone.picture().rgb);
   EXPECT_EQ(b.picture().rgb, alone.picture().rgb);
   EXPECT_GT(a.cpu_seconds(), 0);
@@ -70,6 +69,28 @@ TEST(FilmRender, UnitsCoverEachPixelOnce) {
       EXPECT_EQ(covered, 1) << x << ',' << y;
     }
   }
+}
+
+TEST(FilmRender, UnitsKnowTheirAreas) {
+  const World of = world(kGaussian);
+  RenderOptions options;
+  options.adaptive = true, options.crop_given = true;
+  // 13 x 7 pixels of the picture, and as many more around as the filter reaches.
+  options.crop[0] = 3 / 40.0, options.crop[1] = 16 / 40.0, options.crop[2] = 5 / 24.0, options.crop[3] = 12 / 24.0;
+  int64_t sum = 0;
+  FilmRender film(of.scene(), options);
+  for (const FilmRender::Unit& u : film.units()) {
+    int64_t counted = 0;
+    for (int y = u.pixels.min.y; y < u.pixels.max.y; ++y) {
+      for (int x = u.pixels.min.x; x < u.pixels.max.x; ++x) counted += u.holds(x, y);
+    }
+    EXPECT_EQ(u.area(), counted);
+    sum += u.area();
+  }
+  const FilterTable filter(of.scene().filter());
+  EXPECT_EQ(sum, (13 + 2 * filter.x_reach()) * (7 + 2 * filter.y_reach()));
+  film.extend(4);
+  EXPECT_EQ(film.result().samples_per_pixel, 4);
 }
 
 TEST(FilmRender, UnitsHaveTheSamplesTheyAreGivenForAnyThreads) {

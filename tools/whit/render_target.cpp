@@ -53,7 +53,7 @@ Json json_of(const RenderSettings& settings, const TargetOutcome& o, double seco
       {"achieved", Json::Object{{"value", o.claim.value}, {"lower95", o.claim.low}, {"upper95", o.claim.high}}},
       {"met", o.end == TargetEnd::Met},
       {"end", end_text(o, !settings.target.error.empty())},
-      {"samples_mean", o.samples_mean},
+      {"samples_mean", o.rendered.result.samples_per_pixel},
       {"untrusted_pixels", o.doubts.count},
       {"seconds", seconds}};
   if (o.doubts.count > 0) {
@@ -117,7 +117,7 @@ int report_target(const RenderSettings& settings, const TargetOutcome& o, double
   if (!settings.quiet) {
     say(fmt::format("{}: {}, nRMSE, {} sure; {:.1f} samples per pixel.{}", end_text(o, has_target),
                     std::isinf(o.claim.value) ? "error unknown" : "error " + claim_text(o.claim),
-                    settings.target.confidence, o.samples_mean, doubts_text(o.doubts)));
+                    settings.target.confidence, o.rendered.result.samples_per_pixel, doubts_text(o.doubts)));
   }
   if (const std::string& file = settings.target.json; !file.empty()) {
     if (const std::string problem = write_text(file, to_text(json_of(settings, o, seconds)) + '\n'); !problem.empty()) {
