@@ -40,7 +40,8 @@ class TargetRender {
         pixels_(std::accumulate(areas_.begin(), areas_.end(), 0.0)) {}
 
   TargetOutcome run() {
-    out_.end = first_pass();
+    // A film may be without pixels: by a narrow crop, or by the integrator's bounds.
+    out_.end = units_.empty() ? TargetEnd::Samples : first_pass();
     if (out_.end == TargetEnd::Met) out_.end = request_.error > 0 ? approach() : use_time();
     finish();
     return std::move(out_);

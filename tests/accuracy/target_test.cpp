@@ -96,6 +96,23 @@ TEST(Target, EndsInTimeAndTellsHowLongAPictureTakesToWrite) {
   EXPECT_LT(seconds, 1.5);  // a fifth of a second of it and a bit is left for writing
 }
 
+TEST(Target, OfAFilmWithoutPixelsIsNothing) {
+  for (const double error : {0.0, 0.01}) {
+    World w = world("sobol", "box");
+    TargetRequest request;
+    request.error = error;
+    request.deadline = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+    RenderOptions options;
+    options.crop_given = true;
+    // Between the left ends of the first two pixels, of which ceil(64 x) is 1 both times.
+    options.crop[0] = 0.001, options.crop[1] = 0.0015;
+    const TargetOutcome o = render_to_target(w.built, options, request, 0);
+    EXPECT_NE(o.end, TargetEnd::Met);
+    EXPECT_EQ(o.rendered.result.samples_per_pixel, 0);
+    EXPECT_TRUE(std::isinf(o.claim.value));
+  }
+}
+
 TEST(Target, IsStoppedByProgress) {
   World w = world();
   TargetRequest request;
