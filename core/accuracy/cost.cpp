@@ -30,7 +30,7 @@ constexpr int kCrop = 96;
 
 class Study {
  public:
-  Study(const ParsedFile& file, size_t world, const CostRequest& request)
+  Study(ParsedFile& file, size_t world, const CostRequest& request)
       : file_(file), number_(world), request_(request), clock_(request) {}
 
   CostStudy run() {
@@ -199,7 +199,7 @@ class Study {
     }
   }
 
-  const ParsedFile& file_;
+  ParsedFile& file_;
   const size_t number_;
   const CostRequest& request_;
   CostClock clock_;
@@ -214,7 +214,7 @@ class Study {
 
 }  // namespace
 
-CostStudy study_cost(const ParsedFile& file, size_t world, const CostRequest& request) {
+CostStudy study_cost(ParsedFile& file, size_t world, const CostRequest& request) {
   return Study(file, world, request).run();
 }
 

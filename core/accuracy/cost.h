@@ -134,11 +134,12 @@ struct CostReport {
   bool complete = true;                ///< False when time or the user ended it early.
 };
 
-/// Studies one world of a file. Problems of the scene are in `said`; without a scene the report has no settings.
+/// Studies one world of a file. Problems of the scene are in `said`; without a scene the report has no settings. The
+/// world's statements are others while variants are built, and what they were in the end.
 struct CostStudy {
   CostReport report;
   Diagnostics said;
 };
-CostStudy study_cost(const ParsedFile& file, size_t world, const CostRequest& request);
+CostStudy study_cost(ParsedFile& file, size_t world, const CostRequest& request);
 
 }  // namespace whit

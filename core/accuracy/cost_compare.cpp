@@ -50,8 +50,8 @@ std::optional<Estimate> noise_ratio(const CostPairs& pairs, const CostLevels& le
 
 class Comparing {
  public:
-  Comparing(CostWorld& base, const CostLevels& levels, const CostJudge& judge, const Box2i& crop,
-            const ParsedFile& file, size_t world, const CostRequest& request, CostClock& clock)
+  Comparing(CostWorld& base, const CostLevels& levels, const CostJudge& judge, const Box2i& crop, ParsedFile& file,
+            size_t world, const CostRequest& request, CostClock& clock)
       : base_(base),
         levels_(levels),
         judge_(judge),
@@ -182,7 +182,7 @@ class Comparing {
   const CostLevels& levels_;
   const CostJudge& judge_;
   const Box2i crop_;
-  const ParsedFile& file_;
+  ParsedFile& file_;
   const size_t world_;
   const CostRequest& request_;
   CostClock& clock_;
@@ -196,7 +196,7 @@ class Comparing {
 }  // namespace
 
 CostComparisons compare_all(CostWorld& base, const std::vector<CostAlternative>& alternatives, const CostLevels& levels,
-                            const CostJudge& judge, const Box2i& crop, const ParsedFile& file, size_t world,
+                            const CostJudge& judge, const Box2i& crop, ParsedFile& file, size_t world,
                             const CostRequest& request, CostClock& clock) {
   return Comparing(base, levels, judge, crop, file, world, request, clock).run(alternatives);
 }

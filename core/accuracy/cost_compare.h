@@ -14,7 +14,7 @@ struct CostComparisons {
 
 /// Compares the scene with each alternative at the greatest measured number of samples that leaves time for all.
 CostComparisons compare_all(CostWorld& base, const std::vector<CostAlternative>& alternatives, const CostLevels& levels,
-                            const CostJudge& judge, const Box2i& crop, const ParsedFile& file, size_t world,
+                            const CostJudge& judge, const Box2i& crop, ParsedFile& file, size_t world,
                             const CostRequest& request, CostClock& clock);
 
 }  // namespace whit

@@ -39,7 +39,7 @@ void add_samplers(const SceneDescription& world, bool all, std::vector<CostAlter
   for (const std::string& name : all ? plugin_names("sampler") : std::vector<std::string>{"sobol", "random"}) {
     if (name == own) continue;
     CostAlternative& other = add(to, "sampler", own, name, "--sampler");
-    other.variant.overrides.emplace().sampler = name, other.same_limit = true;
+    other.variant.overrides.sampler = name, other.same_limit = true;
   }
 }
 
@@ -55,9 +55,8 @@ void add_depths(const SceneDescription& world, const EffectPlan& plan, std::vect
   const auto above = std::upper_bound(std::begin(kDepths), std::end(kDepths), static_cast<int>(*own));
   if (above != std::end(kDepths) && *own <= 32) depths.push_back(*above);
   for (int depth : depths) {
-    add(to, "maxdepth", fmt::format("{:.0f}", *own), std::to_string(depth), "--maxdepth")
-        .variant.overrides.emplace()
-        .max_depth = depth;
+    add(to, "maxdepth", fmt::format("{:.0f}", *own), std::to_string(depth), "--maxdepth").variant.overrides.max_depth =
+        depth;
   }
 }
 
@@ -85,7 +84,7 @@ void add_texture_filters(const SceneDescription& world, const EffectPlan& plan, 
   if (own.empty()) return;
   for (const char* filter : {"point", "trilinear", "ewa"}) {
     if (own == filter) continue;
-    add(to, "texture filter", own, filter, "--texture-filter").variant.overrides.emplace().texture_filter = filter;
+    add(to, "texture filter", own, filter, "--texture-filter").variant.overrides.texture_filter = filter;
   }
 }
 
@@ -93,7 +92,7 @@ void add_integrators(const SceneDescription& world, std::vector<CostAlternative>
   const std::string own = integrator_in_force(world).name;
   if (own != "path") return;
   for (const char* name : {"whitted", "directlighting"})
-    add(to, "integrator", own, name, "--integrator").variant.overrides.emplace().integrator = name;
+    add(to, "integrator", own, name, "--integrator").variant.overrides.integrator = name;
 }
 
 /// Roulette begins at the fifth bounce.
@@ -106,7 +105,7 @@ void add_roulette(const SceneDescription& world, const EffectPlan& plan, std::ve
     if (*own == threshold) continue;
     CostAlternative& other =
         add(to, "roulette", fmt::format("{:g}", *own), fmt::format("{:g}", threshold), "--rrthreshold");
-    other.variant.overrides.emplace().rr_threshold = threshold, other.same_limit = true;
+    other.variant.overrides.rr_threshold = threshold, other.same_limit = true;
   }
 }
 

@@ -77,16 +77,12 @@ StatementPlace statement_place(const Sources& sources) {
   };
 }
 
-CostWorld open_world(const ParsedFile& file, size_t number, const CostVariant& variant, const CostRequest& request,
+CostWorld open_world(ParsedFile& file, size_t number, const CostVariant& variant, const CostRequest& request,
                      CostClock& clock) {
   CostWorld world;
   world.description = &file.worlds[number];
-  if (variant.overrides) {
-    world.own = std::make_unique<SceneDescription>(file.worlds[number]);
-    world.description = world.own.get();
-    if (const std::string problem = override_world(*world.own, *variant.overrides); !problem.empty())
-      world.said.error(world.own->world_begin, problem);
-  }
+  const ScopedOverrides scope(file.worlds[number], variant.overrides);
+  if (!scope.problem().empty()) world.said.error(world.description->world_begin, scope.problem());
   const Stopwatch planning;
   PlannedWorld planned = plan_world(*world.description, *file.sources, {.off = variant.off});
   world.said.append(planned.said);

@@ -17,7 +17,7 @@ namespace whit {
 struct CostVariant {
   std::string knob, value;  ///< As CostSetting has them; the name of an effect in `value` where an effect is left out.
   std::string flags;        ///< "--sampler random".
-  std::optional<Overrides> overrides{};
+  Overrides overrides{};
   EffectSet off{};
   bool robust = true;
 };
@@ -26,8 +26,7 @@ struct CostVariant {
 StatementPlace statement_place(const Sources& sources);
 
 struct CostWorld {
-  std::unique_ptr<SceneDescription> own;  ///< A changed copy of the file's world; null where nothing is changed.
-  const SceneDescription* description = nullptr;  ///< What the rest refers to.
+  const SceneDescription* description = nullptr;  ///< The file's, which the rest refers to.
   BuiltWorld built;
   OutputPlan output;  ///< Of the picture as the plain command writes it, into a folder that is gone.
   RenderOptions options;
@@ -42,7 +41,7 @@ struct CostWorld {
 };
 
 /// Plans, builds and renders one sample twice: what the first takes more is what is done at first sight.
-CostWorld open_world(const ParsedFile& file, size_t world, const CostVariant& variant, const CostRequest& request,
+CostWorld open_world(ParsedFile& file, size_t world, const CostVariant& variant, const CostRequest& request,
                      CostClock& clock);
 
 /// Several pictures of one world, each of a seed of its own, that grow.

@@ -65,7 +65,7 @@ struct Asked {
 };
 
 CostStudy study(const std::string& text, const Asked& asked = {}) {
-  const ParsedFile file = read_scene_text("test", text);
+  ParsedFile file = read_scene_text("test", text);
   EXPECT_FALSE(file.said.has_errors());
   CostRequest request;
   request.seconds = asked.seconds, request.quick = asked.quick, request.progress = asked.progress;

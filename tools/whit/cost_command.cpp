@@ -73,7 +73,7 @@ std::string program() {
   return name.empty() ? "whit" : name;
 }
 
-CostStudy study(const CostFlags& flags, const ParsedFile& file, CostRequest request) {
+CostStudy study(const CostFlags& flags, ParsedFile& file, CostRequest request) {
   const Interruptible until_ctrl_c;
   Progress progress("measuring");
   request.seconds = duration_of(flags.time);
@@ -106,7 +106,7 @@ int write_report(const CostFlags& flags, const CostReport& report) {
 }
 
 int run(const CostFlags& flags, const CostRequest& begun) {
-  const ParsedFile file = read_scene(flags.scene);
+  ParsedFile file = read_scene(flags.scene);
   if (file.said.has_errors() || file.worlds.empty()) {
     const Diagnostics all = all_problems(file);
     print_diagnostics(*file.sources, all);
