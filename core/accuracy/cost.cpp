@@ -62,6 +62,11 @@ class Study {
     fixed_ = {request_.before.wall + world_.fixed.wall, request_.before.cpu + world_.fixed.cpu};
     r.fixed_seconds = fixed_.cpu, r.fixed_wall = fixed_.wall;
     r.per_sample_seconds = world_.per_sample.cpu, r.per_sample_wall = world_.per_sample.wall;
+    if (world_.invalid_samples > 0)
+      not_known(
+          fmt::format("{} of one sample for each pixel are no valid radiance (NaN, infinite or of negative "
+                      "luminance) and are left out of all pictures here: what they should be is not known.",
+                      world_.invalid_samples));
     if (file_.worlds.size() > 1)
       not_known(fmt::format("The file has {} worlds; this is the first.", file_.worlds.size()));
   }

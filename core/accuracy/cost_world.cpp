@@ -63,6 +63,7 @@ FirstLook look(CostWorld& world, bool write) {
   if (!out.complete) return out;
   const Stopwatch after;
   const RenderResult result = film.result();
+  world.invalid_samples = result.statistics.invalid_samples;
   if (write) world.said.append(write_output(world.output, result, {}).said);
   out.around = more(all.elapsed(), watch.elapsed()) + after.elapsed();
   return out;

@@ -31,9 +31,10 @@ struct CostWorld {
   OutputPlan output;  ///< Of the picture as the plain command writes it, into a folder that is gone.
   RenderOptions options;
   Diagnostics said;
-  Elapsed fixed;        ///< Of a render with any number of samples: building, first looks, writing.
-  Elapsed per_sample;   ///< For all pixels, by a render of one.
-  int own_samples = 0;  ///< Per pixel, that the scene asks for.
+  Elapsed fixed;                ///< Of a render with any number of samples: building, first looks, writing.
+  Elapsed per_sample;           ///< For all pixels, by a render of one.
+  int own_samples = 0;          ///< Per pixel, that the scene asks for.
+  int64_t invalid_samples = 0;  ///< Of one for each pixel: those that are no numbers, and are left out.
   bool usable = false;
   bool too_slow = false;  ///< Not even one sample came to its end in time.
 

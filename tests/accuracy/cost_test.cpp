@@ -238,6 +238,9 @@ TEST(Cost, SaysWhatIsNotDefined) {
       study(square("Sampler \"random\" \"integer pixelsamples\" 16", stripes(), 2000), {.seconds = 0.05}).report;
   EXPECT_TRUE(says(slow, "--time")) << slow.not_known.size();
   EXPECT_FALSE(slow.complete);
+  // A sky that is darker than black: no sample that meets it has a luminance one could compare.
+  const std::string negative = "LightSource \"infinite\" \"rgb L\" [-90 1 1]\n" + stripes();
+  EXPECT_TRUE(says(study(square("", negative), {.seconds = 0.5}).report, "no valid radiance"));
   const CostReport one = study(square("", stripes(), 1), {.seconds = 0.5}).report;
   EXPECT_FALSE(levels(one).empty());
 }
