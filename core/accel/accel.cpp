@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <optional>
 
+#include "core/accel/analytic_scene.h"
 #include "core/accel/embree.h"
 #include "core/accel/embree_geometry.h"
 #include "core/accel/near_emitter.h"
@@ -24,8 +26,10 @@ struct Accel::Impl {
     RTCScene scene = nullptr;
     int first_shape = 0;  ///< Shape index of geometry 0: a group's shapes are numbered without gaps.
     int shape_count = 0;
+    int some_geometry = -1;  ///< A number of a geometry that is in the scene.
   };
   std::vector<Group> groups;
+  std::optional<AnalyticScene> analytic;  ///< Of the world; see there.
   std::vector<int32_t> instance_group;
   std::vector<Box3d> swept;                                 ///< Of each instance that moves: where it ever is.
   std::vector<std::pair<int, std::vector<Affine>>> moving;  ///< Their groups and keys, until build().
@@ -36,6 +40,8 @@ struct Accel::Impl {
   std::atomic<ssize_t> bytes{0};
   std::string error;
 
+  template <int N>
+  void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first) const;
   template <int N>
   void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
   void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
@@ -56,6 +62,7 @@ struct Accel::Impl {
   void commit() const {
     for (size_t g = 1; g < groups.size(); ++g) rtcCommitScene(groups[g].scene);
     rtcCommitScene(groups[kWorld].scene);
+    rtcCommitScene(analytic->scene());
   }
   /// Of what Embree was asked since the last call; "" when all went well.
   std::string problem() const {
@@ -71,11 +78,18 @@ struct Accel::Impl {
   /// Attaches with the geometry number that makes shape = first_shape + number.
   void attach(int g, RTCGeometry geometry, int shape) {
     Group& to = group(g);
+    to.some_geometry = attach(g, to.scene, geometry, shape);
+  }
+  /// The same to a scene beside the group's; returns the number.
+  int attach(int g, RTCScene scene, RTCGeometry geometry, int shape) {
+    Group& to = group(g);
     if (to.shape_count == 0) to.first_shape = shape;
+    const int number = shape - to.first_shape;
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(to.scene, geometry, static_cast<unsigned>(shape - to.first_shape));
+    rtcAttachGeometryByID(scene, geometry, static_cast<unsigned>(number));
     rtcReleaseGeometry(geometry);
-    to.shape_count = std::max(to.shape_count, shape - to.first_shape + 1);
+    to.shape_count = std::max(to.shape_count, number + 1);
+    return number;
   }
 };
 
@@ -102,10 +116,12 @@ Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
       },
       impl_.get());
   add_group();
+  impl_->analytic.emplace(impl_->new_scene());
 }
 
 Accel::~Accel() {
   for (auto& g : impl_->groups) rtcReleaseScene(g.scene);
+  impl_->analytic.reset();
   rtcReleaseDevice(impl_->device);
 }
 
@@ -157,7 +173,12 @@ void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, co
   if (geometry.cannot_shade_itself()) user->unshaded_by_itself = shape;
   rtcSetGeometryUserData(g, user);
   set_analytic_callbacks(g);
-  impl_->attach(group, g, shape);
+  if (group == kWorld) {
+    impl_->attach(group, impl_->analytic->scene(), g, shape);
+    impl_->analytic->add_box(user->bounds, user->unshaded_by_itself);
+  } else {
+    impl_->attach(group, g, shape);
+  }
   impl_->worth += kWorthOfAnalytic;
 }
 
@@ -171,7 +192,9 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcCommitGeometry(g);
   // Instances are numbered after the world's own shapes, which are all there when the first instance comes.
   const int index = static_cast<int>(impl_->instance_group.size());
-  rtcAttachGeometryByID(impl_->group(kWorld).scene, g, static_cast<unsigned>(impl_->group(kWorld).shape_count + index));
+  Impl::Group& world = impl_->group(kWorld);
+  world.some_geometry = world.shape_count + index;
+  rtcAttachGeometryByID(world.scene, g, static_cast<unsigned>(world.some_geometry));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
   if (keys.size() > 1) impl_->moving.emplace_back(group, keys);
@@ -206,43 +229,48 @@ std::string Accel::build() {
 std::string Accel::watch_ends() {
   for (const Impl::Group& group : impl_->groups) {
     impl_->set_flags(group.scene, kQueryFilter);
-    const bool is_empty =
-        group.shape_count == 0 && (group.scene != impl_->groups[kWorld].scene || impl_->instance_group.empty());
     // A scene is built anew when something in it is committed, and not for flags alone.
-    if (!is_empty) rtcCommitGeometry(rtcGetGeometry(group.scene, 0));
+    if (group.some_geometry >= 0)
+      rtcCommitGeometry(rtcGetGeometry(group.scene, static_cast<unsigned>(group.some_geometry)));
   }
   impl_->commit();
   return impl_->problem();
 }
 
+/// The hits of up to N rays from `first` on.
 template <int N>
-void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, bool coherent) const {
-  const RTCScene scene = groups[kWorld].scene;
+void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first) const {
   const int world_first = groups[kWorld].first_shape, world_shapes = groups[kWorld].shape_count;
-  EmbreeQuery query(coherent || worth <= small_scene);
+  const int count = std::min(N, rays.n - first);
   alignas(64) typename Packets<N>::RayHit packet;
   alignas(64) int valid[N];
-  for (int first = 0; first < rays.n; first += N) {
-    const int count = std::min(N, rays.n - first);
-    load_packet<N>(rays, first, count, packet.ray, valid);
-    for (int i = 0; i < N; ++i) {
-      packet.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-    }
-    query.trace(valid, scene, packet);
-    copy_lanes<N>(hits.t + first, packet.ray.tfar, count);
-    copy_lanes<N>(hits.u + first, packet.hit.u, count);
-    copy_lanes<N>(hits.v + first, packet.hit.v, count);
-    copy_lanes<N>(hits.prim + first, packet.hit.primID, count);
-    for (int i = 0; i < count; ++i) {
-      if (!valid[i]) hits.t[first + i] = std::numeric_limits<float>::quiet_NaN();
-      const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
-      const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
-      const bool instanced = hit && instance != RTC_INVALID_GEOMETRY_ID;
-      hits.instance[first + i] = instanced ? static_cast<int32_t>(instance) - world_shapes : -1;
-      hits.shape[first + i] = hit ? static_cast<int32_t>(geometry) + world_first : -1;
-    }
+  load_packet<N>(rays, LanesFrom{first}, count, rays.t_max, packet.ray, valid);
+  no_hits<N>(packet.hit);
+  query.trace(valid, groups[kWorld].scene, packet);
+  copy_lanes<N>(hits.t + first, packet.ray.tfar, count);
+  copy_lanes<N>(hits.u + first, packet.hit.u, count);
+  copy_lanes<N>(hits.v + first, packet.hit.v, count);
+  copy_lanes<N>(hits.prim + first, packet.hit.primID, count);
+  for (int i = 0; i < count; ++i) {
+    if (!valid[i]) hits.t[first + i] = std::numeric_limits<float>::quiet_NaN();
+    const unsigned geometry = packet.hit.geomID[i], instance = packet.hit.instID[0][i];
+    const bool hit = geometry != RTC_INVALID_GEOMETRY_ID;
+    const bool instanced = hit && instance != RTC_INVALID_GEOMETRY_ID;
+    hits.instance[first + i] = instanced ? static_cast<int32_t>(instance) - world_shapes : -1;
+    hits.shape[first + i] = hit ? static_cast<int32_t>(geometry) + world_first : -1;
   }
+}
+
+template <int N>
+void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, bool coherent) const {
+  const bool alike = coherent || worth <= small_scene;
+  EmbreeQuery query(alike);
+  int first = 0;
+  if (kHasStreams && alike && instance_group.empty()) {
+    for (; rays.n - first > N; first += kStream) intersect<kStream>(rays, hits, query, first);
+  }
+  for (; first < rays.n; first += N) intersect<N>(rays, hits, query, first);
+  analytic->intersect<N>(rays, hits, query, groups[kWorld].first_shape);
 }
 
 void Accel::Impl::intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const {
@@ -278,11 +306,12 @@ void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   alignas(64) int valid[N];
   for (int first = 0; first < rays.n; first += N) {
     const int count = std::min(N, rays.n - first);
-    load_packet<N>(rays, first, count, packet, valid);
+    load_packet<N>(rays, LanesFrom{first}, count, rays.t_max, packet, valid);
     ends.lengthen(first, count, packet.tfar);
     query.trace(valid, groups[kWorld].scene, packet);
     for (int i = 0; i < count; ++i) blocked[first + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
   }
+  analytic->occluded<N>(rays, ends, query, blocked);
 }
 
 void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
@@ -310,12 +339,16 @@ bool Accel::is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) co
   for (const Box3d& swept : impl_->swept) {
     if (swept.intersects(room)) return true;
   }
-  return is_anything_near(world.scene, user_of, box, corners);
+  const UserOf analytic_of = [&](unsigned, unsigned geometry) {
+    return static_cast<const GeometryUser*>(rtcGetGeometryUserData(rtcGetGeometry(impl_->analytic->scene(), geometry)));
+  };
+  return is_anything_near(world.scene, user_of, box, corners) ||
+         is_anything_near(impl_->analytic->scene(), analytic_of, box, corners);
 }
 
 bool Accel::has_instances() const { return !impl_->instance_group.empty(); }
 
-void* Accel::embree_scene() const { return impl_->groups[kWorld].scene; }
+std::array<void*, 2> Accel::embree_scenes() const { return {impl_->groups[kWorld].scene, impl_->analytic->scene()}; }
 
 size_t Accel::bytes() const { return static_cast<size_t>(std::max<ssize_t>(0, impl_->bytes)); }
 

@@ -103,8 +103,8 @@ class Accel {
   void record(RayRecord* record);
   /// True when something is instanced. Embree 3.13.5 then never returns from a coherent packet of occlusion rays.
   bool has_instances() const;
-  /// Embree's scene of the world, an RTCScene.
-  void* embree_scene() const;
+  /// Embree's scenes of the world, each an RTCScene: analytic shapes are in the second.
+  std::array<void*, 2> embree_scenes() const;
 
   /// Bytes Embree holds.
   size_t bytes() const;

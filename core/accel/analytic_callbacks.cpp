@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/accel/embree_geometry.h"
+#include "core/accel/reach.h"
 #include "core/accel/shadow_rays.h"
 #include "core/base/box.h"
 
@@ -18,26 +19,18 @@ void analytic_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 /// Whether any valid ray reaches a box. Embree asks this of the boxes of a tree, but not where one shape is all there
-/// is in it; a callback that begins in double precision costs ten times as much. A NaN counts as reaching.
-bool reaches(const RTCRayN* const_rays, const int* valid, unsigned width, const RTCBounds& box) {
+/// is in it; a callback that begins in double precision costs ten times as much.
+bool any_reaches(const RTCRayN* const_rays, const int* valid, unsigned width, const RTCBounds& box) {
   RTCRayN* rays = const_cast<RTCRayN*>(const_rays);  // Embree's accessors know no const
   const float *ox = &RTCRayN_org_x(rays, width, 0), *oy = &RTCRayN_org_y(rays, width, 0);
   const float *oz = &RTCRayN_org_z(rays, width, 0), *dx = &RTCRayN_dir_x(rays, width, 0);
   const float *dy = &RTCRayN_dir_y(rays, width, 0), *dz = &RTCRayN_dir_z(rays, width, 0);
   const float *t_near = &RTCRayN_tnear(rays, width, 0), *t_far = &RTCRayN_tfar(rays, width, 0);
-  constexpr float kWiden = 1 + 1e-6f;
   int any = 0;
 #pragma omp simd reduction(| : any)
   for (unsigned i = 0; i < width; ++i) {
-    const auto low = [](float a, float b) { return b < a ? b : a; };
-    const auto high = [](float a, float b) { return b > a ? b : a; };
-    const float ix = 1 / dx[i], iy = 1 / dy[i], iz = 1 / dz[i];
-    const float x0 = (box.lower_x - ox[i]) * ix, x1 = (box.upper_x - ox[i]) * ix;
-    const float y0 = (box.lower_y - oy[i]) * iy, y1 = (box.upper_y - oy[i]) * iy;
-    const float z0 = (box.lower_z - oz[i]) * iz, z1 = (box.upper_z - oz[i]) * iz;
-    const float enter = high(high(low(x0, x1), low(y0, y1)), high(low(z0, z1), t_near[i]));
-    const float leave = low(low(high(x0, x1), high(y0, y1)), low(high(z0, z1), t_far[i]));
-    any |= valid[i] & -!(enter > leave * kWiden);
+    const Vec3f o(ox[i], oy[i], oz[i]), inverse(1 / dx[i], 1 / dy[i], 1 / dz[i]);
+    any |= valid[i] & -static_cast<int>(reaches(box, o, inverse, t_near[i], t_far[i]));
   }
   return any != 0;
 }
@@ -99,7 +92,7 @@ bool meets_before_end(const ShadowRays& shadow, const GeometryUser& user, const 
 template <class Stands, class Accept>
 void trace_analytic(const GeometryUser& user, RTCRayN* rays, const int* valid, unsigned width, bool shadow,
                     const Stands& stands, const Accept& accept) {
-  if (!reaches(rays, valid, width, user.bounds)) return;
+  if (!any_reaches(rays, valid, width, user.bounds)) return;
   ObjectPacket packet(rays, valid, width, *user.analytic);
   double t_far[kWidth];
   std::memcpy(t_far, packet.t, sizeof(double) * static_cast<size_t>(packet.n));

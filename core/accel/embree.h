@@ -33,6 +33,25 @@ using EmbreeContext = RTCIntersectContext;
 constexpr RTCSceneFlags kQueryFilter = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
+/// Rays of a stream, which Embree 3 traces together by what bounds them all if neighbours are alike; laid out as its
+/// packets are.
+constexpr int kStream = 64;
+constexpr bool kHasStreams = RTC_VERSION_MAJOR < 4;
+struct alignas(64) RayStream {
+  float org_x[kStream], org_y[kStream], org_z[kStream], tnear[kStream];
+  float dir_x[kStream], dir_y[kStream], dir_z[kStream], time[kStream];
+  float tfar[kStream];
+  unsigned mask[kStream], id[kStream], flags[kStream];
+};
+struct alignas(64) HitStream {
+  float Ng_x[kStream], Ng_y[kStream], Ng_z[kStream], u[kStream], v[kStream];
+  unsigned primID[kStream], geomID[kStream], instID[RTC_MAX_INSTANCE_LEVEL_COUNT][kStream];
+};
+struct RayHitStream {
+  RayStream ray;
+  HitStream hit;
+};
+
 /// What Embree hands on to callbacks: its own context, and behind it ours.
 struct QueryContext : EmbreeContext {
   const void* shadow =
@@ -66,6 +85,7 @@ class EmbreeQuery {
   void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &rays, &intersect_); }
   void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &rays, &intersect_); }
   void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &rays, &intersect_); }
+  void trace(const int*, RTCScene, RayHitStream&) {}  // has no streams
   void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &ray, &occluded_); }
   void trace(const int* valid, RTCScene scene, RTCRay4& rays) { rtcOccluded4(valid, scene, &rays, &occluded_); }
   void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &rays, &occluded_); }
@@ -89,6 +109,10 @@ class EmbreeQuery {
   void trace(const int* valid, RTCScene scene, RTCRayHit4& rays) { rtcIntersect4(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRayHit8& rays) { rtcIntersect8(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRayHit16& rays) { rtcIntersect16(valid, scene, &context_, &rays); }
+  /// Lanes that are switched off must end before they begin.
+  void trace(const int*, RTCScene scene, RayHitStream& rays) {
+    rtcIntersectNM(scene, &context_, reinterpret_cast<RTCRayHitN*>(&rays), kStream, 1, sizeof rays);
+  }
   void trace(const int*, RTCScene scene, RTCRay& ray) { rtcOccluded1(scene, &context_, &ray); }
   void trace(const int* valid, RTCScene scene, RTCRay4& rays) { rtcOccluded4(valid, scene, &context_, &rays); }
   void trace(const int* valid, RTCScene scene, RTCRay8& rays) { rtcOccluded8(valid, scene, &context_, &rays); }

@@ -27,6 +27,11 @@ struct Packets<16> {
   using Ray = RTCRay16;
   using RayHit = RTCRayHit16;
 };
+template <>
+struct Packets<kStream> {
+  using Ray = RayStream;
+  using RayHit = RayHitStream;
+};
 
 /// Copies the first `count` of up to N values. A whole packet is a matter of one instruction, without a call.
 template <int N, class T>
@@ -35,11 +40,40 @@ void copy_lanes(T* to, const T* from, int count) {
   else std::memcpy(to, from, sizeof(T) * static_cast<size_t>(count));
 }
 
-/// Fills one packet from lanes [first, first + count). Lanes beyond count and rays that are not usable are switched off
+/// Which lanes go into a packet: those from `first` on, or those of a list.
+struct LanesFrom {
+  int first;
+  int operator[](int i) const { return first + i; }
+};
+struct LanesOf {
+  const int32_t* list;
+  int operator[](int i) const { return list[i]; }
+};
+
+/// Copies `count` of up to N values from lanes of an array.
+template <int N, class T>
+void take_lanes(T* to, const T* from, LanesFrom lanes, int count) {
+  copy_lanes<N>(to, from + lanes.first, count);
+}
+template <int N, class T>
+void take_lanes(T* to, const T* from, LanesOf lanes, int count) {
+  for (int i = 0; i < count; ++i) to[i] = from[lanes[i]];
+}
+
+/// Makes all hits of a packet misses.
+template <int N, class Hit>
+void no_hits(Hit& hit) {
+  for (int i = 0; i < N; ++i) {
+    hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+    hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+}
+
+/// Fills one packet from `count` lanes, with ends t_max (null: infinite) by lane. Lanes beyond count and rays that are not usable are switched off
 /// by `valid`, and are such that nothing happens to them should Embree look at them all the same.
-template <int N, class Packet>
-void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* valid) {
-  const auto copy = [&](float* to, const float* from) { copy_lanes<N>(to, from + first, count); };
+template <int N, class Lanes, class Packet>
+void load_packet(const RayLanes& rays, Lanes lanes, int count, const float* t_max, Packet& ray, int* valid) {
+  const auto copy = [&](float* to, const float* from) { take_lanes<N>(to, from, lanes, count); };
   copy(ray.org_x, rays.o.x), copy(ray.org_y, rays.o.y), copy(ray.org_z, rays.o.z);
   copy(ray.dir_x, rays.d.x), copy(ray.dir_y, rays.d.y), copy(ray.dir_z, rays.d.z);
   for (int i = 0; i < N; ++i) {
@@ -47,10 +81,10 @@ void load_packet(const RayLanes& rays, int first, int count, Packet& ray, int* v
     ray.time[i] = 0;
     ray.tfar[i] = std::numeric_limits<float>::infinity();
     ray.mask[i] = 0xffffffffu;
-    ray.id[i] = static_cast<unsigned>(first + i);
     ray.flags[i] = 0;
   }
-  if (rays.t_max) copy(ray.tfar, rays.t_max);
+  for (int i = 0; i < count; ++i) ray.id[i] = static_cast<unsigned>(lanes[i]);
+  if (t_max) copy(ray.tfar, t_max);
   if (rays.time) copy(ray.time, rays.time);
   for (int i = 0; i < N; ++i) {
     const Vec3f o(ray.org_x[i], ray.org_y[i], ray.org_z[i]), d(ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]);

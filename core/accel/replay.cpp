@@ -29,7 +29,7 @@ void RayRecord::add(RayKind kind, const RayLanes& rays) {
 class Replay {
  public:
   Replay(const Accel& accel, const RayRecord& record, RayKind kind, RayCall call)
-      : scene_(static_cast<RTCScene>(accel.embree_scene())),
+      : scenes_(accel.embree_scenes()),
         rays_(record.of(kind)),
         query_(call == RayCall::Packet16Coherent) {}
 
@@ -72,7 +72,7 @@ class Replay {
         RTCHitN_instID(hit, N, i, 0) = RTC_INVALID_GEOMETRY_ID;
       }
     }
-    query_.trace(valid, scene_, packet);
+    for (void* scene : scenes_) query_.trace(valid, static_cast<RTCScene>(scene), packet);
   }
 
   /// Makes a lane a ray that ends before it begins.
@@ -84,7 +84,7 @@ class Replay {
     RTCRayN_time(ray, width, i) = 0;
   }
 
-  RTCScene scene_;
+  std::array<void*, 2> scenes_;
   const RayRecord::Rays& rays_;
   EmbreeQuery query_;
 };

@@ -1,0 +1,49 @@
+// The world's analytic shapes, in an Embree scene of their own beside that of the triangles. Embree keeps them in a tree
+// of their own in any case and walks it for every ray: a lamp alone was a quarter of the render of a mesh under it. Here
+// rays are first asked for the boxes of the shapes, all rays of a batch at once, and few are left to be traced.
+#pragma once
+
+#include <vector>
+
+#include "core/accel/packets.h"
+#include "core/accel/shadow_rays.h"
+
+namespace whit {
+
+class AnalyticScene {
+ public:
+  /// Takes over a reference to a scene.
+  explicit AnalyticScene(RTCScene scene) : scene_(scene) {}
+  ~AnalyticScene() { rtcReleaseScene(scene_); }
+  AnalyticScene(const AnalyticScene&) = delete;
+  AnalyticScene& operator=(const AnalyticScene&) = delete;
+
+  RTCScene scene() const { return scene_; }
+  bool empty() const { return boxes_.empty(); }
+  /// Of a shape that was attached to the scene; `unshaded_by_itself` as in GeometryUser.
+  void add_box(const RTCBounds& bounds, int unshaded_by_itself);
+
+  /// Replaces hits by nearer ones on the analytic shapes; geometry 0 of the scene has number first_shape.
+  template <int N>
+  void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first_shape) const;
+  /// Writes 1 where an analytic shape is hit, and leaves the rest.
+  template <int N>
+  void occluded(const RayLanes& rays, const ShadowEnds& ends, EmbreeQuery& query, uint8_t* blocked) const;
+
+ private:
+  static constexpr int kBlock = 256;  ///< Rays that are asked together.
+  static constexpr size_t kFew = 8;   ///< So many boxes are looked at one by one; of more, the box around all.
+  static constexpr int kNone = -3;    ///< In place of a number of a shape that cannot shade itself: every shape counts.
+  struct Reach {
+    RTCBounds bounds;
+    int unshaded_by_itself;
+  };
+
+  int reaching(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by, int32_t* lanes) const;
+
+  RTCScene scene_;
+  std::vector<Reach> boxes_;
+  size_t count_ = 0;
+};
+
+}  // namespace whit
