@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/accel/analytic_scene.h"
+#include "core/accel/blockers.h"
 #include "core/accel/embree.h"
 #include "core/accel/embree_geometry.h"
 #include "core/accel/near_emitter.h"
@@ -32,7 +33,9 @@ struct Accel::Impl {
   std::optional<AnalyticScene> analytic;  ///< Of the world; see there.
   std::vector<int32_t> instance_group;
   std::vector<Box3d> swept;                                 ///< Of each instance that moves: where it ever is.
-  std::vector<std::pair<int, std::vector<Affine>>> moving;  ///< Their groups and keys, until build().
+  std::vector<std::pair<int, std::vector<Affine>>> placed;  ///< Groups and keys of instances, until build().
+  Blockers blockers;                                        ///< Of the world; not of use where there are curves.
+  bool knows_blockers = true;
   std::vector<std::unique_ptr<GeometryUser>> users;
   bool has_meshes = false, second_look = false;
   double small_scene = 0;
@@ -47,7 +50,7 @@ struct Accel::Impl {
   void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
   template <int N>
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
-  void sweep_moving();
+  void sweep_instances();
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
   RTCScene new_scene() const {
@@ -141,6 +144,7 @@ void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest
   rtcSetGeometryUserData(g, user);
   if (alpha) set_alpha_filter(g);
   impl_->attach(group, g, shape);
+  if (group == kWorld) impl_->blockers.add_mesh(mesh);
   impl_->worth += static_cast<double>(mesh.triangle_count);
   impl_->has_meshes = true;
 }
@@ -151,6 +155,7 @@ void Accel::add_curves(int group, const CurveView& curves, int shape, const Alph
   rtcSetGeometryUserData(g, impl_->new_user(nullptr, alpha, curves));
   set_curve_callbacks(g);
   impl_->attach(group, g, shape);
+  if (group == kWorld) impl_->knows_blockers = false;
   impl_->worth += kWorthOfLarge;
 }
 
@@ -162,6 +167,7 @@ void Accel::add_exact(int group, std::span<const ExactTriangle> triangles, int s
   rtcSetGeometryUserData(g, user);
   set_exact_callbacks(g);
   impl_->attach(group, g, shape);
+  if (group == kWorld) impl_->blockers.add_exact(triangles);
   impl_->worth += kWorthOfAnalytic * static_cast<double>(triangles.size());
 }
 
@@ -176,6 +182,8 @@ void Accel::add_analytic(int group, const AnalyticShape& geometry, int shape, co
   if (group == kWorld) {
     impl_->attach(group, impl_->analytic->scene(), g, shape);
     impl_->analytic->add_box(user->bounds, user->unshaded_by_itself);
+    impl_->blockers.add_box(transform_box(geometry.object_to_scene(), geometry.object_bounds()),
+                            user->unshaded_by_itself);
   } else {
     impl_->attach(group, g, shape);
   }
@@ -197,32 +205,38 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcAttachGeometryByID(world.scene, g, static_cast<unsigned>(world.some_geometry));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
-  if (keys.size() > 1) impl_->moving.emplace_back(group, keys);
+  impl_->placed.emplace_back(group, keys);
   impl_->worth += kWorthOfLarge;
   return index;
 }
 
 /// Between two keys a point moves on a straight line, so the boxes at the keys hold all there is.
-void Accel::Impl::sweep_moving() {
-  for (const auto& [number, keys] : moving) {
+void Accel::Impl::sweep_instances() {
+  for (const auto& [number, keys] : placed) {
     RTCBounds b;
     rtcGetSceneBounds(group(number).scene, &b);
     const auto wide = [](float v) { return static_cast<double>(v); };
     const Box3d box({wide(b.lower_x), wide(b.lower_y), wide(b.lower_z)},
                     {wide(b.upper_x), wide(b.upper_y), wide(b.upper_z)});
-    Box3d& all = swept.emplace_back();
+    if (box.isEmpty()) continue;
+    Box3d all;
     for (const Affine& key : keys) {
       Mat4d m;
       for (int i = 0; i < 12; ++i) m[i / 3][i % 3] = wide(key.m[i]);
       all.extendBy(transform_box(m, box));
     }
+    // Embree traces instances in their own space, by floats of the transform.
+    const Vec3d rounding(1e-5 * (all.size().length() + all.center().length()));
+    blockers.add_box(Box3d(all.min - rounding, all.max + rounding));
+    if (keys.size() > 1) swept.push_back(all);
   }
-  moving.clear();
+  placed.clear();
 }
 
 std::string Accel::build() {
   impl_->commit();
-  impl_->sweep_moving();
+  impl_->sweep_instances();
+  if (impl_->knows_blockers) impl_->blockers.build();
   return impl_->problem();
 }
 
@@ -297,21 +311,33 @@ void Accel::intersect(const RayLanes& rays, const Hits& hits, bool coherent) con
 
 template <int N>
 void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
+  static_assert(Blockers::kGroup == AnalyticScene::kBlock);
   // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
   EmbreeQuery query(false);
   const ShadowRays shadow{groups[kWorld].scene, rays};
   const ShadowEnds ends(rays);
   if (ends.any) query.set_shadow(&shadow, ends.touched ? end_filter : nullptr);
+  const bool may_be_clear = knows_blockers && !ends.touched;
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
-  for (int first = 0; first < rays.n; first += N) {
-    const int count = std::min(N, rays.n - first);
-    load_packet<N>(rays, LanesFrom{first}, count, rays.t_max, packet, valid);
-    ends.lengthen(first, count, packet.tfar);
-    query.trace(valid, groups[kWorld].scene, packet);
-    for (int i = 0; i < count; ++i) blocked[first + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
+  alignas(64) float t_far[Blockers::kGroup];
+  for (int first = 0; first < rays.n; first += Blockers::kGroup) {
+    const int count = std::min(Blockers::kGroup, rays.n - first);
+    for (int i = 0; i < count; ++i)
+      t_far[i] = rays.t_max ? rays.t_max[first + i] : std::numeric_limits<float>::infinity();
+    ends.lengthen(first, count, t_far);
+    if (may_be_clear && blockers.are_clear(rays, first, count, t_far, unshaded_by(rays, first, count))) {
+      std::fill_n(blocked + first, count, uint8_t{0});
+      continue;
+    }
+    for (int k = 0; k < count; k += N) {
+      const int here = std::min(N, count - k);
+      load_packet<N>(rays, LanesFrom{first + k}, here, t_far - first, packet, valid);
+      query.trace(valid, groups[kWorld].scene, packet);
+      for (int i = 0; i < here; ++i) blocked[first + k + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
+    }
+    analytic->occluded<N>(rays, first, count, t_far, query, blocked);
   }
-  analytic->occluded<N>(rays, ends, query, blocked);
 }
 
 void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {

@@ -15,7 +15,7 @@ void AnalyticScene::add_box(const RTCBounds& bounds, int unshaded_by_itself) {
     all = {std::min(all.lower_x, b.lower_x), std::min(all.lower_y, b.lower_y), std::min(all.lower_z, b.lower_z), 0,
            std::max(all.upper_x, b.upper_x), std::max(all.upper_y, b.upper_y), std::max(all.upper_z, b.upper_z), 0};
   }
-  boxes_.assign(1, {all, kNone - 1});
+  boxes_.assign(1, {all, kEveryone});
 }
 
 /// The lanes among [first, first + count) that reach some box within [0, t_far], which has a value for each of them. A
@@ -46,7 +46,7 @@ void AnalyticScene::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuer
   alignas(64) int valid[N];
   int32_t lanes[kBlock];
   for (int first = 0; first < rays.n; first += kBlock) {
-    const int n = reaching(rays, first, std::min(kBlock, rays.n - first), hits.t + first, kNone, lanes);
+    const int n = reaching(rays, first, std::min(kBlock, rays.n - first), hits.t + first, kNobody, lanes);
     for (int k = 0; k < n; k += N) {
       const int count = std::min(N, n - k);
       load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
@@ -64,34 +64,28 @@ void AnalyticScene::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuer
 }
 
 template <int N>
-void AnalyticScene::occluded(const RayLanes& rays, const ShadowEnds& ends, EmbreeQuery& query, uint8_t* blocked) const {
+void AnalyticScene::occluded(const RayLanes& rays, int first, int count, const float* t_far, EmbreeQuery& query,
+                             uint8_t* blocked) const {
   if (empty()) return;
-  const int unshaded_by = rays.end && !rays.ends ? rays.end->unshaded_by : kNone;
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
-  alignas(64) float t_far[kBlock];
+  alignas(64) float left[kBlock];
   int32_t lanes[kBlock];
-  for (int first = 0; first < rays.n; first += kBlock) {
-    const int here = std::min(kBlock, rays.n - first);
-    if (rays.t_max) std::copy_n(rays.t_max + first, here, t_far);
-    else std::fill_n(t_far, here, std::numeric_limits<float>::infinity());
-    ends.lengthen(first, here, t_far);
-    for (int i = 0; i < here; ++i) t_far[i] = blocked[first + i] ? -1.0f : t_far[i];
-    const int n = reaching(rays, first, here, t_far, unshaded_by, lanes);
-    for (int k = 0; k < n; k += N) {
-      const int count = std::min(N, n - k);
-      load_packet<N>(rays, LanesOf{lanes + k}, count, t_far - first, packet, valid);
-      query.trace(valid, scene_, packet);
-      for (int i = 0; i < count; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
-    }
+  for (int i = 0; i < count; ++i) left[i] = blocked[first + i] ? -1.0f : t_far[i];
+  const int n = reaching(rays, first, count, left, unshaded_by(rays, first, count), lanes);
+  for (int k = 0; k < n; k += N) {
+    const int here = std::min(N, n - k);
+    load_packet<N>(rays, LanesOf{lanes + k}, here, t_far - first, packet, valid);
+    query.trace(valid, scene_, packet);
+    for (int i = 0; i < here; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
   }
 }
 
 template void AnalyticScene::intersect<4>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
 template void AnalyticScene::intersect<8>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
 template void AnalyticScene::intersect<16>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
-template void AnalyticScene::occluded<4>(const RayLanes&, const ShadowEnds&, EmbreeQuery&, uint8_t*) const;
-template void AnalyticScene::occluded<8>(const RayLanes&, const ShadowEnds&, EmbreeQuery&, uint8_t*) const;
-template void AnalyticScene::occluded<16>(const RayLanes&, const ShadowEnds&, EmbreeQuery&, uint8_t*) const;
+template void AnalyticScene::occluded<4>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
+template void AnalyticScene::occluded<8>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
+template void AnalyticScene::occluded<16>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
 
 }  // namespace whit

@@ -26,14 +26,16 @@ class AnalyticScene {
   /// Replaces hits by nearer ones on the analytic shapes; geometry 0 of the scene has number first_shape.
   template <int N>
   void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first_shape) const;
-  /// Writes 1 where an analytic shape is hit, and leaves the rest.
+  /// Writes 1 for those of rays [first, first + count), at most kBlock, that hit an analytic shape before t_far, which has
+  /// a value for each of them, and leaves the rest.
   template <int N>
-  void occluded(const RayLanes& rays, const ShadowEnds& ends, EmbreeQuery& query, uint8_t* blocked) const;
+  void occluded(const RayLanes& rays, int first, int count, const float* t_far, EmbreeQuery& query,
+                uint8_t* blocked) const;
+
+  static constexpr int kBlock = 64;  ///< Rays that are asked together.
 
  private:
-  static constexpr int kBlock = 256;  ///< Rays that are asked together.
-  static constexpr size_t kFew = 8;   ///< So many boxes are looked at one by one; of more, the box around all.
-  static constexpr int kNone = -3;    ///< In place of a number of a shape that cannot shade itself: every shape counts.
+  static constexpr size_t kFew = 8;  ///< So many boxes are looked at one by one; of more, the box around all.
   struct Reach {
     RTCBounds bounds;
     int unshaded_by_itself;

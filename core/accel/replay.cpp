@@ -29,9 +29,7 @@ void RayRecord::add(RayKind kind, const RayLanes& rays) {
 class Replay {
  public:
   Replay(const Accel& accel, const RayRecord& record, RayKind kind, RayCall call)
-      : scenes_(accel.embree_scenes()),
-        rays_(record.of(kind)),
-        query_(call == RayCall::Packet16Coherent) {}
+      : scenes_(accel.embree_scenes()), rays_(record.of(kind)), query_(call == RayCall::Packet16Coherent) {}
 
   /// Traces all rays, N at a time.
   template <unsigned N, class Packet>

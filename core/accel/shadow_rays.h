@@ -6,6 +6,10 @@
 
 namespace whit {
 
+/// In place of a number of a shape that does not hide its own points: no ray ends on such a shape; the shape, or several
+/// together, hide theirs.
+constexpr int kNobody = -3, kEveryone = -4;
+
 /// For Embree's callbacks; a ray's id is its number among them.
 struct ShadowRays {
   RTCScene world;
@@ -30,6 +34,15 @@ struct Beyond {
       room = static_cast<float>(kNearEnd / 2);
   }
 };
+
+/// The shape that hides its own points from none of rays [first, first + count); kNobody if there is no such.
+inline int unshaded_by(const RayLanes& rays, int first, int count) {
+  if (!rays.ends) return rays.end ? rays.end->unshaded_by : kNobody;
+  const int shape = rays.ends[first]->unshaded_by;
+  for (int i = first + 1; i < first + count; ++i)
+    if (rays.ends[i]->unshaded_by != shape) return kNobody;
+  return shape;
+}
 
 /// The ends of the shadow rays of a call: one, or one for each.
 struct ShadowEnds {

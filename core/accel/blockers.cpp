@@ -1,0 +1,226 @@
+#include "core/accel/blockers.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/accel/embree_geometry.h"
+
+namespace whit {
+namespace {
+
+/// Triangles that share a box, as they follow each other in the mesh: neighbours, in most. Meshes of no more than a few
+/// have a box for each: floors and walls, which stand next to their own shadow rays but never in their way.
+constexpr size_t kRun = 64, kFew = 32;
+/// A shaft that meets so many nodes is not worth more looking.
+constexpr int kMostNodes = 64;
+
+}  // namespace
+
+/// Rays as the hull of two boxes: at each share s of the way the box (1 - s) from + s to.
+struct Blockers::Shaft {
+  Box from, to;
+  const RayLanes& rays;
+  int first, count;
+  const float* t_far;
+  int unshaded_by;
+};
+
+void Blockers::add_mesh(const MeshView& mesh) { meshes_.push_back(mesh); }
+
+void Blockers::add_exact(std::span<const ExactTriangle> triangles) {
+  for (const ExactTriangle& t : triangles) {
+    Box3d box(t.a);
+    box.extendBy(t.b), box.extendBy(t.c);
+    const Vec3d beyond(std::max({t.reach[0], t.reach[1], t.reach[2]}) + t.error);
+    add_box(Box3d(box.min - beyond, box.max + beyond));
+    items_.back().exact = &t;
+  }
+}
+
+void Blockers::add_box(const Box3d& box, int unshaded_by_itself) {
+  RTCBounds b;
+  set_bounds(box, b);
+  Item& item = items_.emplace_back();
+  item.box = {{b.lower_x, b.lower_y, b.lower_z}, {b.upper_x, b.upper_y, b.upper_z}};
+  item.unshaded_by_itself = unshaded_by_itself;
+}
+
+namespace {
+
+/// Grows a box [low, high] by what is in [more_low, more_high].
+template <class Box>
+void grow(Box& box, const std::array<float, 3>& low, const std::array<float, 3>& high) {
+  for (size_t k = 0; k < 3; ++k)
+    box.low[k] = std::min(box.low[k], low[k]), box.high[k] = std::max(box.high[k], high[k]);
+}
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::array<float, 3> kNothingLow{kInfinity, kInfinity, kInfinity};
+constexpr std::array<float, 3> kNothingHigh{-kInfinity, -kInfinity, -kInfinity};
+
+}  // namespace
+
+void Blockers::build() {
+  for (const MeshView& mesh : meshes_) {
+    const bool single = mesh.triangle_count <= kFew;
+    const size_t run = single ? 1 : kRun, runs = (mesh.triangle_count + run - 1) / run, before = items_.size();
+    items_.resize(before + runs);
+    tbb::parallel_for(size_t{0}, runs, [&](size_t r) {
+      Item& item = items_[before + r];
+      item.box = {kNothingLow, kNothingHigh};
+      item.mesh = single ? &mesh : nullptr, item.triangle = static_cast<uint32_t>(r * run);
+      for (size_t i = 3 * r * run; i < 3 * std::min((r + 1) * run, mesh.triangle_count); ++i) {
+        const float* const p = mesh.positions + 3 * static_cast<size_t>(mesh.indices[i]);
+        grow(item.box, {p[0], p[1], p[2]}, {p[0], p[1], p[2]});
+      }
+    });
+  }
+  Box all{kNothingLow, kNothingHigh};
+  for (const Item& item : items_) grow(all, item.box.low, item.box.high);
+  across_ = std::hypot(all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]);
+  if (!items_.empty()) build_node(0, static_cast<int>(items_.size()));
+}
+
+/// A node over items [first, last), which it sorts: halved three times across the longest axis. Returns its number.
+int Blockers::build_node(int first, int last) {
+  std::array<int, kWidth + 1> cut{first, last};
+  int parts = 1;
+  while (parts < kWidth && last - first > parts) {
+    std::array<int, kWidth + 1> finer{};
+    int n = 0;
+    for (int k = 0; k < parts; ++k) {
+      const int from = cut[static_cast<size_t>(k)], to = cut[static_cast<size_t>(k) + 1];
+      finer[static_cast<size_t>(n++)] = from;
+      if (to - from < 2) continue;
+      Box middles{kNothingLow, kNothingHigh};
+      const auto middle = [](const Item& item, size_t axis) { return item.box.low[axis] + item.box.high[axis]; };
+      for (int i = from; i < to; ++i) {
+        const Item& item = items_[static_cast<size_t>(i)];
+        const Three m{middle(item, 0), middle(item, 1), middle(item, 2)};
+        grow(middles, m, m);
+      }
+      size_t axis = 0;
+      for (size_t a = 1; a < 3; ++a)
+        if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
+      const int half = from + (to - from) / 2;
+      std::nth_element(items_.begin() + from, items_.begin() + half, items_.begin() + to,
+                       [&](const Item& a, const Item& b) { return middle(a, axis) < middle(b, axis); });
+      finer[static_cast<size_t>(n++)] = half;
+    }
+    finer[static_cast<size_t>(n)] = last;
+    cut = finer, parts = n;
+  }
+  const int number = static_cast<int>(nodes_.size());
+  nodes_.emplace_back();
+  for (int k = 0; k < parts; ++k) {
+    const int from = cut[static_cast<size_t>(k)], to = cut[static_cast<size_t>(k) + 1];
+    const int child = to - from == 1 ? ~from : build_node(from, to);
+    Box box{kNothingLow, kNothingHigh};
+    for (int i = from; i < to; ++i) {
+      const Box& b = items_[static_cast<size_t>(i)].box;
+      grow(box, b.low, b.high);
+    }
+    Node& node = nodes_[static_cast<size_t>(number)];
+    for (size_t a = 0; a < 3; ++a) node.low[a][k] = box.low[a], node.high[a][k] = box.high[a];
+    node.child[k] = child, node.count = parts;
+  }
+  return number;
+}
+
+/// A bit for each child whose box the shaft meets. The box at s meets another where it begins before that ends and ends
+/// behind where that begins, along each axis: six conditions a + s (b - a) <= 0 on s.
+unsigned Blockers::meets(const Shaft& shaft, const Node& node) {
+  alignas(32) float least[kWidth], most[kWidth];
+  std::fill_n(least, kWidth, 0.0f), std::fill_n(most, kWidth, 1.0f);
+  const auto condition = [](float a, float b, float& from, float& to) {
+    constexpr float kWiden = 1e-5f;
+    const float zero = a / (a - b);
+    const float above = b > 0 ? 2.0f : zero * (1 - kWiden), below = a > 0 ? -1.0f : zero * (1 + kWiden) + kWiden;
+    from = std::max(from, a > 0 ? above : 0.0f);
+    to = std::min(to, b > 0 ? below : 1.0f);
+  };
+  for (size_t k = 0; k < 3; ++k) {
+    const float* const low = node.low[k];
+    const float* const high = node.high[k];
+    const float from_low = shaft.from.low[k], to_low = shaft.to.low[k];
+    const float from_high = shaft.from.high[k], to_high = shaft.to.high[k];
+    for_lanes(kWidth, [&](int i) {
+      condition(from_low - high[i], to_low - high[i], least[i], most[i]);
+      condition(low[i] - from_high, low[i] - to_high, least[i], most[i]);
+    });
+  }
+  unsigned met = 0;
+  for (int i = 0; i < node.count; ++i) met |= static_cast<unsigned>(least[i] <= most[i]) << i;
+  return met;
+}
+
+/// Whether rays that come near an item pass it: one that does not count, or a triangle that all rays are on one side of.
+bool Blockers::is_passed(const Item& item, const Shaft& shaft) {
+  if (item.unshaded_by_itself == shaft.unshaded_by) return true;
+  if (item.exact) return are_beside(shaft, item.exact->n, item.exact->n * item.exact->height, item.exact->error);
+  if (!item.mesh) return false;
+  const uint32_t* const index = item.mesh->indices + 3 * static_cast<size_t>(item.triangle);
+  const auto corner = [&](int k) {
+    const float* const p = item.mesh->positions + 3 * static_cast<size_t>(index[k]);
+    return Vec3d(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
+  };
+  const Vec3d a = corner(0);
+  return are_beside(shaft, (corner(1) - a).cross(corner(2) - a), a, 0);
+}
+
+/// Whether all rays are on one side of a plane through a, by more than `error`. In double precision: rays leave a surface
+/// by its error bound, a few roundings of floats.
+bool Blockers::are_beside(const Shaft& shaft, const Vec3d& n, const Vec3d& a, double error) {
+  int in_front = 0, behind = 0;
+  for (int i = 0; i < shaft.count; ++i) {
+    const int lane = shaft.first + i;
+    const Vec3d o(shaft.rays.o[lane]), d(shaft.rays.d[lane]);
+    const double start = n.dot(o - a), end = start + n.dot(d) * static_cast<double>(shaft.t_far[i]);
+    in_front += (start > error) & (end > error), behind += (start < -error) & (end < -error);
+  }
+  return in_front == shaft.count || behind == shaft.count;
+}
+
+bool Blockers::are_clear(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by) const {
+  if (nodes_.empty()) return items_.empty();
+  if (!std::isfinite(across_)) return false;
+  Shaft shaft{{kNothingLow, kNothingHigh}, {kNothingLow, kNothingHigh}, rays, first, count, t_far, unshaded_by};
+  const float* const o[3] = {rays.o.x + first, rays.o.y + first, rays.o.z + first};
+  const float* const d[3] = {rays.d.x + first, rays.d.y + first, rays.d.z + first};
+  for (size_t k = 0; k < 3; ++k) {
+    float from_low = kInfinity, from_high = -kInfinity, to_low = kInfinity, to_high = -kInfinity, most = 0;
+    const float *const ok = o[k], *const dk = d[k];
+    const float across = across_;
+#pragma omp simd reduction(min : from_low, to_low) reduction(max : from_high, to_high, most)
+    for (int i = 0; i < count; ++i) {
+      const float t = t_far[i] < across ? t_far[i] : across, end = ok[i] + dk[i] * t;
+      from_low = ok[i] < from_low ? ok[i] : from_low, from_high = ok[i] > from_high ? ok[i] : from_high;
+      to_low = end < to_low ? end : to_low, to_high = end > to_high ? end : to_high;
+      most = t > most ? t : most;
+    }
+    // Of the sum, and of the product.
+    const float rounding = 4e-7f * (std::max(std::abs(to_low), std::abs(to_high)) + most);
+    shaft.from.low[k] = from_low, shaft.from.high[k] = from_high;
+    shaft.to.low[k] = to_low - rounding, shaft.to.high[k] = to_high + rounding;
+    if (!(to_low <= to_high) || !(from_low <= from_high)) return false;
+  }
+  std::array<int32_t, 8 * kMostNodes> waiting;
+  size_t n = 1;
+  waiting[0] = 0;
+  for (int visited = 0; n > 0; ++visited) {
+    if (visited == kMostNodes) return false;
+    const Node& node = nodes_[static_cast<size_t>(waiting[--n])];
+    for (unsigned met = meets(shaft, node); met != 0; met &= met - 1) {
+      const int32_t child = node.child[std::countr_zero(met)];
+      if (child >= 0) waiting[n++] = child;
+      else if (!is_passed(items_[static_cast<size_t>(~child)], shaft)) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace whit
