@@ -158,6 +158,42 @@ Scattered Tracer::scatter(const Points& points, const Vec3Lanes& wi, bool densit
   return out;
 }
 
+/// The shadow rays of the lanes of a list, or of all lanes, which are then not copied.
+RayLanes Tracer::shadow_rays(const Points& points, const DirectSamples& samples, const int32_t* lanes, int n) {
+  const ShadingBatch& at = points.at;
+  const Vec3Lanes o = arena_.vec3(n);
+  RayLanes rays{n, o, samples.wi, samples.distance, nullptr, nullptr, {}, nullptr};
+  if (n == points.n) {
+    const Vec3Lanes wi = samples.wi;
+    for_lanes(n, [&](int i) { o.set(i, offset_origin(at.p[i], at.p_error[i], at.ng[i], wi[i])); });
+    rays.q = samples.q, rays.time = points.rays.time;
+  } else {
+    const Vec3Lanes d = rays.d = arena_.vec3(n);
+    float* const t_max = arena_.floats(n);
+    rays.t_max = t_max;
+    for_lanes(n, [&](int i) {
+      const int from = lanes[i];
+      const Vec3f wi = samples.wi[from];
+      d.set(i, wi);
+      o.set(i, offset_origin(at.p[from], at.p_error[from], at.ng[from], wi));
+      t_max[i] = samples.distance[from];
+    });
+    if (samples.q) gather(lanes, n, samples.q, rays.q = arena_.vec3(n));
+    if (points.rays.time) {
+      float* const time = arena_.floats(n);
+      gather(lanes, n, points.rays.time, time);
+      rays.time = time;
+    }
+  }
+  if (samples.light >= 0) rays.end = &scene_.lights[static_cast<size_t>(samples.light)].end;
+  if (samples.lights) {
+    const RayEnd** ends = arena_.alloc<const RayEnd*>(n);
+    for (int i = 0; i < n; ++i) ends[i] = &scene_.lights[static_cast<size_t>(samples.lights[lanes[i]])].end;
+    rays.ends = ends;
+  }
+  return rays;
+}
+
 RGBLanes Tracer::visible(const Points& points, const DirectSamples& samples, const RGBLanes& light) {
   int32_t* lanes = arena_.alloc<int32_t>(points.n);
   int n = 0;
@@ -167,29 +203,7 @@ RGBLanes Tracer::visible(const Points& points, const DirectSamples& samples, con
     n += !(light.r[i] == 0 && light.g[i] == 0 && light.b[i] == 0);
   }
   if (n == 0 || !scene_.plan.live(Effect::Shadows)) return light;
-  const Vec3Lanes o = arena_.vec3(n), d = arena_.vec3(n);
-  float* t_max = arena_.floats(n);
-  const ShadingBatch& at = points.at;
-  for_lanes(n, [&](int i) {
-    const int from = lanes[i];
-    const Vec3f wi = samples.wi[from];
-    d.set(i, wi);
-    o.set(i, offset_origin(at.p[from], at.p_error[from], at.ng[from], wi));
-    t_max[i] = samples.distance[from];
-  });
-  RayLanes rays{n, o, d, t_max, nullptr, nullptr, {}, nullptr};
-  if (samples.light >= 0) rays.end = &scene_.lights[static_cast<size_t>(samples.light)].end;
-  if (samples.lights) {
-    const RayEnd** ends = arena_.alloc<const RayEnd*>(n);
-    for (int i = 0; i < n; ++i) ends[i] = &scene_.lights[static_cast<size_t>(samples.lights[lanes[i]])].end;
-    rays.ends = ends;
-  }
-  if (samples.q) gather(lanes, n, samples.q, rays.q = arena_.vec3(n));
-  if (points.rays.time) {
-    float* const time = arena_.floats(n);
-    gather(lanes, n, points.rays.time, time);
-    rays.time = time;
-  }
+  const RayLanes rays = shadow_rays(points, samples, lanes, n);
   uint8_t* blocked = arena_.alloc<uint8_t>(n);
   scene_.accel->occluded(rays, blocked);
   worker_.statistics.shadow_rays += n;

@@ -100,7 +100,10 @@ ShadingBatch allocate(const SurfaceHits& h, bool bumps, Arena& arena) {
 
 ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& arena) {
   const ShadingBatch s = allocate(h, scene.plan.live(Effect::Bump), arena);
-  const GeometricPartials g{arena.vec3(h.n), arena.vec3(h.n)};
+  // Footprints alone need those of the geometry, and instances turn what there is: else there is no telling them apart.
+  const bool apart = h.has_differentials() || scene.has_instances;
+  const GeometricPartials g =
+      apart ? GeometricPartials{arena.vec3(h.n), arena.vec3(h.n)} : GeometricPartials{s.dpdu, s.dpdv};
   for (int i = 0; i < h.n; ++i) s.flips[i] = scene.shapes[static_cast<size_t>(h.shape[i])].flips;
   for_lanes(h.n, [&](int i) { s.wo.set(i, -h.d[i]); });
   for (int first = 0, last; first < h.n; first = last) {

@@ -20,13 +20,28 @@ struct Corners {
               int n) const {
     const float* const v = vectors.data();
     const auto at = [v](uint32_t i) { return Vec3f(v[3 * i], v[3 * i + 1], v[3 * i + 2]); };
-    for (int i = first; i < first + n; ++i) {
-      const uint32_t* index = &indices[3 * static_cast<size_t>(prim[i])];
-      const bool has = !vectors.empty();
-      a.set(i, has ? at(index[0]) : Vec3f(0, 0, 0));
-      b.set(i, has ? at(index[1]) : Vec3f(0, 0, 0));
-      c.set(i, has ? at(index[2]) : Vec3f(0, 0, 0));
+    const bool has = !vectors.empty();
+    for_triangles(prim, first, n, [&](uint32_t triangle, int from, int to) {
+      const uint32_t* index = &indices[3 * static_cast<size_t>(triangle)];
+      fill(a, from, to, has ? at(index[0]) : Vec3f(0, 0, 0));
+      fill(b, from, to, has ? at(index[1]) : Vec3f(0, 0, 0));
+      fill(c, from, to, has ? at(index[2]) : Vec3f(0, 0, 0));
+    });
+  }
+
+  /// Calls f(triangle, from, to) for every stretch of lanes on one triangle: a wall's are long.
+  template <class F>
+  static void for_triangles(const uint32_t* prim, int first, int n, const F& f) {
+    for (int from = first, to; from < first + n; from = to) {
+      for (to = from + 1; to < first + n && prim[to] == prim[from];) ++to;
+      f(prim[from], from, to);
     }
+  }
+
+ private:
+  static void fill(const Vec3Lanes& lanes, int from, int to, const Vec3f& v) {
+    float *const x = lanes.x, *const y = lanes.y, *const z = lanes.z;
+    for (int i = from; i < to; ++i) x[i] = v.x, y[i] = v.y, z[i] = v.z;
   }
 };
 
@@ -39,13 +54,16 @@ struct TriangleLanes {
 
   /// Texture coordinates of triangles of one mesh, as Corners::gather(); pbrt's where the mesh has none.
   void gather_uvs(const Mesh& mesh, const uint32_t* prim, int first, int count) const {
-    const bool has = !mesh.uvs.empty();
-    for (int i = first; i < first + count; ++i) {
-      const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(prim[i])];
-      const Vec2f a = has ? mesh.uv(index[0]) : Vec2f(0, 0), b = has ? mesh.uv(index[1]) : Vec2f(1, 0);
-      const Vec2f c = has ? mesh.uv(index[2]) : Vec2f(1, 1);
-      u0[i] = a.x, v0[i] = a.y, u1[i] = b.x, v1[i] = b.y, u2[i] = c.x, v2[i] = c.y;
-    }
+    const auto fill = [&](int from, int to, const Vec2f& a, const Vec2f& b, const Vec2f& c) {
+      std::fill(u0 + from, u0 + to, a.x), std::fill(v0 + from, v0 + to, a.y);
+      std::fill(u1 + from, u1 + to, b.x), std::fill(v1 + from, v1 + to, b.y);
+      std::fill(u2 + from, u2 + to, c.x), std::fill(v2 + from, v2 + to, c.y);
+    };
+    if (mesh.uvs.empty()) return fill(first, first + count, {0, 0}, {1, 0}, {1, 1});
+    Corners::for_triangles(prim, first, count, [&](uint32_t triangle, int from, int to) {
+      const uint32_t* index = &mesh.indices[3 * static_cast<size_t>(triangle)];
+      fill(from, to, mesh.uv(index[0]), mesh.uv(index[1]), mesh.uv(index[2]));
+    });
   }
 };
 

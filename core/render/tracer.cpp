@@ -20,6 +20,15 @@ Hits allocate_hits(int n, Arena& arena) {
           arena.alloc<int32_t>(n), arena.floats(n),         arena.floats(n)};
 }
 
+/// Whether each number is one more than that before it.
+bool are_consecutive(const int32_t* numbers, int n) {
+  int others = 0;
+  const int first = numbers[0];
+#pragma omp simd reduction(+ : others)
+  for (int i = 0; i < n; ++i) others += numbers[i] != first + i;
+  return others == 0;
+}
+
 }  // namespace
 
 Hits Tracer::intersect(Rays& rays) {
@@ -31,7 +40,10 @@ Hits Tracer::intersect(Rays& rays) {
     worker_.statistics.passing_rays += passed.traced, worker_.statistics.stopped_rays += passed.stopped;
   }
   // A ray that could not be traced makes its sample invalid, so that it is counted and not just missing.
-  for (int i = 0; i < rays.n; ++i) {
+  int untraced = 0;
+#pragma omp simd reduction(| : untraced)
+  for (int i = 0; i < rays.n; ++i) untraced |= std::isnan(hits.t[i]) ? 1 : 0;
+  for (int i = 0; untraced != 0 && i < rays.n; ++i) {
     if (std::isnan(hits.t[i])) worker_.chunk.radiance.set(rays.slot[i], RGB(std::numeric_limits<float>::quiet_NaN()));
   }
   return hits;
@@ -123,10 +135,13 @@ void Tracer::add(const Points& points, const DirectSamples&, const RGBLanes& lig
 void Tracer::finish() {
   const RGBLanes& sum = worker_.chunk.radiance;
   for (const Points& p : delivering_) {
-    for (int i = 0; i < p.n; ++i) {
-      const int slot = p.rays.slot[i];
-      sum.set(slot, sum[slot] + p.rays.throughput[i] * p.radiance[i]);
+    const int32_t* const slot = p.rays.slot;
+    if (p.n > 0 && are_consecutive(slot, p.n)) {
+      const RGBLanes to = sum.from(slot[0]);
+      for_lanes(p.n, [&](int i) { to.set(i, to[i] + p.rays.throughput[i] * p.radiance[i]); });
+      continue;
     }
+    for (int i = 0; i < p.n; ++i) sum.set(slot[i], sum[slot[i]] + p.rays.throughput[i] * p.radiance[i]);
   }
   delivering_.clear();
 }

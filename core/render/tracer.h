@@ -60,6 +60,7 @@ class Tracer final : public Transport {
   float expected_samples(int light, const Vec3f& p) const;
   DirectSamples allocate_samples(const Points& points, bool densities);
   bool leaves_dark(const SceneLight& light, const Points& points) const;
+  RayLanes shadow_rays(const Points& points, const DirectSamples& samples, const int32_t* lanes, int n);
   Onward specular(const Points& points, LobeType type, int dimension);
 
   Worker& worker_;
