@@ -44,12 +44,17 @@ inline uint32_t shuffle_nested(uint32_t index, uint32_t key) {
   return reverse_bits(hash_upwards(reverse_bits(index), key));
 }
 
+/// x / 3 for x < 2^22, in fewer instructions than the compiler's for all x where vectors multiply integers slowly. Exact:
+/// (x + 1/2) / 3 is at least 1/6 away from an integer, and its rounding error is below x * 2^-23.
+inline uint32_t third_of(uint32_t x) {
+  return static_cast<uint32_t>(
+      static_cast<int32_t>((static_cast<float>(static_cast<int32_t>(x)) + 0.5f) * (1.0f / 3.0f)));
+}
+
 /// One step of the nested scramble in base 3: takes the lowest digit off `index`, appends its image under one of the
 /// six permutations (chosen by `key`) to `value`, and moves `key` on along the branch of that digit. index < 2^22.
 inline void owen_base3_digit(uint32_t& index, uint32_t& key, uint32_t& value) {
-  // Exact: (index + 1/2) / 3 is at least 1/6 away from an integer, and its rounding error is below index * 2^-23.
-  const auto quotient = static_cast<uint32_t>(
-      static_cast<int32_t>((static_cast<float>(static_cast<int32_t>(index)) + 0.5f) * (1.0f / 3.0f)));
+  const uint32_t quotient = third_of(index);
   const uint32_t digit = index - 3 * quotient;
   const uint32_t shift = ((key >> 16) * 3) >> 16;          // 0, 1 or 2
   const uint32_t image = digit * (1 + (key & 1)) + shift;  // at most 6

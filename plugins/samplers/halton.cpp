@@ -18,7 +18,7 @@
 namespace whit {
 namespace {
 
-constexpr int kMaxSamples = 1 << 22;  // owen_base3_digit() divides exactly up to here
+constexpr int kMaxSamples = 1 << 22;  // third_of() is exact up to here
 constexpr int kBlock = 256;
 
 class Halton final : public Sampler {
@@ -95,14 +95,19 @@ class Halton final : public Sampler {
   /// Radical inverses in base 3, digit by digit over the block.
   void reverse_base3_lanes(int n, uint32_t* index, float* out) const {
     uint32_t value[kBlock] = {};
-    const int digits = base3_digits(128 * (static_cast<uint32_t>(pixel_samples) + 1));
-    for (int d = 0; d < digits; ++d) {
-      for_lanes(n, [&](int i) {
-        const uint32_t rest = index[i] / 3u;
-        value[i] = 3 * value[i] + (index[i] - 3 * rest);
-        index[i] = rest;
-      });
-    }
+    const uint32_t most = 128 * (static_cast<uint32_t>(pixel_samples) + 1);
+    const int digits = base3_digits(most);
+    const auto take_digits = [&](const auto& third) {
+      for (int d = 0; d < digits; ++d) {
+        for_lanes(n, [&](int i) {
+          const uint32_t rest = third(index[i]);
+          value[i] = 3 * value[i] + (index[i] - 3 * rest);
+          index[i] = rest;
+        });
+      }
+    };
+    if (most <= 1u << 22) take_digits([](uint32_t x) { return third_of(x); });
+    else take_digits([](uint32_t x) { return x / 3u; });
     const auto width = static_cast<float>(1 / std::pow(3.0, digits));
     for_lanes(n, [&](int i) {
       const float b = static_cast<float>(value[i]) * width;
