@@ -39,29 +39,44 @@ double build_cell_cdf(std::span<const double> weights, float* cdf) {
   // One unit for every cell that counts, and the rest in proportion.
   const double total = black ? static_cast<double>(weights.size()) : sum;
   const double shared = kUnits - static_cast<double>(positive);
-  double running = 0, given = 0;
+  // Sums are one addition after another; what is made of them is not, and is most of the work.
+  constexpr size_t kBlock = 128;
+  double sums[kBlock], counts[kBlock], running = 0, given = 0;
+  const auto all = static_cast<double>(positive);
   cdf[0] = 0;
-  for (size_t i = 0; i < weights.size(); ++i) {
-    const double w = black ? 1 : weights[i];
-    running += w, given += w > 0 ? 1 : 0;
-    const bool complete = given == static_cast<double>(positive);  // rounding of the sum must not leave a gap
-    cdf[i + 1] = static_cast<float>((complete ? kUnits : given + std::floor(shared * (running / total))) / kUnits);
+  for (size_t first = 0; first < weights.size(); first += kBlock) {
+    const size_t n = std::min(kBlock, weights.size() - first);
+    for (size_t i = 0; i < n; ++i) {
+      const double w = black ? 1 : weights[first + i];
+      sums[i] = running += w, counts[i] = given += w > 0 ? 1 : 0;
+    }
+    float* out = cdf + first + 1;
+#pragma omp simd
+    for (size_t i = 0; i < n; ++i) {
+      const double units = counts[i] + std::floor(shared * (sums[i] / total));
+      const bool complete = counts[i] == all;  // rounding of the sum must not leave a gap
+      out[i] = static_cast<float>((complete ? kUnits : units) / kUnits);
+    }
   }
   return sum;
 }
 
-GridDistribution::GridDistribution(int columns, int rows,
-                                   const std::function<void(int row, std::span<double>)>& row_weights)
+GridDistribution::GridDistribution(int columns, int rows)
     : columns_(columns),
       rows_(rows),
+      row_sums_(static_cast<size_t>(rows)),
       rows_cdf_(static_cast<size_t>(rows) + 1),
-      columns_cdf_(static_cast<size_t>(rows) * (static_cast<size_t>(columns) + 1)) {
-  std::vector<double> weights(static_cast<size_t>(columns)), row_sums(static_cast<size_t>(rows));
-  for (size_t r = 0; r < row_sums.size(); ++r) {
-    row_weights(static_cast<int>(r), weights);
-    row_sums[r] = build_cell_cdf(weights, columns_cdf_.data() + r * (weights.size() + 1));
-  }
-  build_cell_cdf(row_sums, rows_cdf_.data());
+      columns_cdf_(
+          std::make_unique_for_overwrite<float[]>(static_cast<size_t>(rows) * (static_cast<size_t>(columns) + 1))) {}
+
+void GridDistribution::set_row(int row, std::span<const double> weights) {
+  const auto r = static_cast<size_t>(row);
+  row_sums_[r] = build_cell_cdf(weights, columns_cdf_.get() + r * (weights.size() + 1));
+}
+
+void GridDistribution::finish() {
+  build_cell_cdf(row_sums_, rows_cdf_.data());
+  row_sums_ = {};
 }
 
 void GridDistribution::sample(int n, const float* u, const float* v, int* column, int* row, float* du,
@@ -74,7 +89,7 @@ void GridDistribution::sample(int n, const float* u, const float* v, int* column
     find_cells(count, rows_cdf_.data(), start, rows_, v + first, row + first, dv + first);
     const ptrdiff_t stride = columns_ + 1;
     for (int i = 0; i < count; ++i) start[i] = stride * row[first + i];
-    find_cells(count, columns_cdf_.data(), start, columns_, u + first, column + first, du + first);
+    find_cells(count, columns_cdf_.get(), start, columns_, u + first, column + first, du + first);
   }
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -21,8 +21,12 @@ double build_cell_cdf(std::span<const double> weights, float* cdf);
 class GridDistribution {
  public:
   GridDistribution() = default;
-  /// `row_weights` fills in the weights of the cells of a row, >= 0 and finite.
-  GridDistribution(int columns, int rows, const std::function<void(int row, std::span<double>)>& row_weights);
+  /// To be told the weights of each row, and finished, before it is asked.
+  GridDistribution(int columns, int rows);
+  /// The weights of the cells of a row, >= 0 and finite. Threads may set different rows at the same time.
+  void set_row(int row, std::span<const double> weights);
+  /// All rows are set.
+  void finish();
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }
@@ -37,7 +41,7 @@ class GridDistribution {
       return (c[1] - c[0]) * (rows_cdf[row + 1] - rows_cdf[row]);
     }
   };
-  View view() const { return {columns_, rows_cdf_.data(), columns_cdf_.data()}; }
+  View view() const { return {columns_, rows_cdf_.data(), columns_cdf_.get()}; }
 
   /// Cells for n pairs of uniform numbers in [0,1), u along a row and v across the rows, with the rest of the numbers
   /// as position within the cell: du, dv in [0,1).
@@ -45,8 +49,9 @@ class GridDistribution {
 
  private:
   int columns_ = 0, rows_ = 0;
-  std::vector<float> rows_cdf_;     ///< rows + 1
-  std::vector<float> columns_cdf_;  ///< rows x (columns + 1)
+  std::vector<double> row_sums_;          ///< Until it is finished.
+  std::vector<float> rows_cdf_;           ///< rows + 1
+  std::unique_ptr<float[]> columns_cdf_;  ///< rows x (columns + 1)
 };
 
 }  // namespace whit

@@ -1,6 +1,10 @@
 #include "plugins/shared/latlong_map.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -19,6 +23,33 @@ double importance(const float* c) {
 }
 
 constexpr int kBlock = 128;
+constexpr size_t kGrain = size_t{1} << 15;  ///< What a thread takes of many numbers.
+
+/// Makes 0 of what is negative, infinite or NaN; returns how many there were.
+size_t clear_bad_numbers(std::vector<float>& values) {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  std::atomic<size_t> bad = 0;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, values.size(), kGrain), [&](const auto& some) {
+    int found = 0;
+    for (size_t i = some.begin(); i < some.end(); ++i) {
+      const float v = values[i];
+      found += v >= 0 && v <= kMost ? 0 : 1;
+    }
+    if (found == 0) return;
+    bad += static_cast<size_t>(found);
+    for (size_t i = some.begin(); i < some.end(); ++i) {
+      if (!(values[i] >= 0 && values[i] <= kMost)) values[i] = 0;
+    }
+  });
+  return bad;
+}
+
+/// The numbers of a picture as they are. No copy is made of one that is R, G, B, for maps are large.
+Texels take_texels(Image&& image) {
+  if (image.channels != 3 || image.rgb_channels() != std::vector<int>{0, 1, 2})
+    return make_texels(image, false, false, 1, false);
+  return {image.width, image.height, 3, std::move(image.pixels)};
+}
 
 /// The cell between texel centres that a map coordinate t (texel i having its centre at i + 1/2) lies in: cell k lies
 /// between texels k - 1 and k, for t in [0, n] and k in [0, n]. And how far in: 0 at texel k - 1, 1 at texel k.
@@ -48,13 +79,10 @@ LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_
 }
 
 void LatLongMap::build_radiance(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) {
-  constexpr float kMost = std::numeric_limits<float>::max();
-  bad_numbers = 0;
-  for (float& v : texels.values) {
-    if (v >= 0 && v <= kMost) continue;
-    v = 0, ++bad_numbers;
-  }
-  if (rule == LatLongRule::Pbrt) texels = resample_to_power_of_two(std::move(texels), WrapMode::LatLong);
+  bad_numbers = clear_bad_numbers(texels.values);
+  const bool resampled =
+      rule == LatLongRule::Pbrt && !(is_power_of_two(texels.width) && is_power_of_two(texels.height));
+  if (resampled) texels = resample_to_power_of_two(std::move(texels), WrapMode::LatLong);
   width_ = texels.width, height_ = texels.height;
   const size_t pixels = static_cast<size_t>(width_) * static_cast<size_t>(height_);
   if (texels.channels == 1) {
@@ -63,7 +91,14 @@ void LatLongMap::build_radiance(Texels texels, const RGB& factor, LatLongRule ru
     texels.values = std::move(rgb);
   }
   radiance_ = std::move(texels.values);
-  for (size_t i = 0; i < radiance_.size(); ++i) radiance_[i] = clamp_to(radiance_[i] * factor[i % 3], -kMost, kMost);
+  if (!resampled && factor == RGB(1.0f)) return;
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, pixels, kGrain), [&](const auto& some) {
+    constexpr float kMost = std::numeric_limits<float>::max();
+    float* texel = radiance_.data() + 3 * some.begin();
+    for (size_t i = 0; i < some.size(); ++i, texel += 3) {
+      for (int c = 0; c < 3; ++c) texel[c] = clamp_to(texel[c] * factor[c], -kMost, kMost);
+    }
+  });
 }
 
 void LatLongMap::build_bands() {
@@ -89,19 +124,29 @@ int LatLongMap::row_below(int band) const { return std::min(band, height_ - 1); 
 
 void LatLongMap::build_cells() {
   const auto columns = static_cast<size_t>(width_);
-  cells_ = GridDistribution(width_, height_ + 1, [&](int k, std::span<double> weights) {
-    // The mean of a bilinear function is that of its corners; the half bands at the poles see half of the slope.
-    const double below = k == 0 ? 0.75 : (k == height_ ? 0.25 : 0.5);
-    const double solid_angle = 1 / static_cast<double>(bands_[static_cast<size_t>(k)].density);
-    const float* upper = radiance_.data() + 3 * columns * static_cast<size_t>(row_above(k));
-    const float* lower = radiance_.data() + 3 * columns * static_cast<size_t>(row_below(k));
-    const auto column_value = [&](size_t i) {
-      return (1 - below) * importance(upper + 3 * i) + below * importance(lower + 3 * i);
-    };
-    for (size_t i = 0; i < columns; ++i) {
-      weights[i] = solid_angle * 0.5 * (column_value(i) + column_value(i + 1 < columns ? i + 1 : 0));
+  cells_ = GridDistribution(width_, height_ + 1);
+  const auto importances = [&](int row, std::vector<double>& out) {
+    const float* texel = radiance_.data() + 3 * columns * static_cast<size_t>(row);
+    for (size_t i = 0; i < columns; ++i) out[i] = importance(texel + 3 * i);
+  };
+  constexpr int kBands = 32;
+  tbb::parallel_for(tbb::blocked_range<int>(0, height_ + 1, kBands), [&](const auto& some) {
+    std::vector<double> upper(columns), lower(columns), values(columns + 1), weights(columns);
+    int lower_row = -1;  // The next band lies below it.
+    for (int k = some.begin(); k < some.end(); ++k) {
+      if (lower_row == row_above(k)) std::swap(upper, lower);
+      else importances(row_above(k), upper);
+      importances(lower_row = row_below(k), lower);
+      // The mean of a bilinear function is that of its corners; the half bands at the poles see half of the slope.
+      const double below = k == 0 ? 0.75 : (k == height_ ? 0.25 : 0.5);
+      const double solid_angle = 1 / static_cast<double>(bands_[static_cast<size_t>(k)].density);
+      for (size_t i = 0; i < columns; ++i) values[i] = (1 - below) * upper[i] + below * lower[i];
+      values[columns] = values[0];
+      for (size_t i = 0; i < columns; ++i) weights[i] = solid_angle * 0.5 * (values[i] + values[i + 1]);
+      cells_.set_row(k, weights);
     }
   });
+  cells_.finish();
 }
 
 /// Texels count by the height of their row's zone of the sphere.
@@ -184,7 +229,7 @@ std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, cons
                                                    const PrepareContext& ctx) {
   Texels texels;
   {
-    const Result<Image> image = read_image(path);
+    Result<Image> image = read_image(path);
     if (!image.ok()) {
       ctx.diagnostics->file_error(ctx.statement, image.error);
       return nullptr;
@@ -197,7 +242,7 @@ std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, cons
                                                      " pixels are too many for an environment map");
       return nullptr;
     }
-    texels = make_texels(image.value, false, false, 1, false);
+    texels = take_texels(std::move(image.value));
   }  // the picture goes here: large maps are not held twice
   size_t bad_numbers = 0;
   auto map = std::make_unique<const LatLongMap>(std::move(texels), factor, rule, bad_numbers);

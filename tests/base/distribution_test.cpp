@@ -17,9 +17,11 @@ std::vector<float> cdf_of(const std::vector<double>& weights) {
 }
 
 GridDistribution grid_of(int columns, int rows, const std::vector<double>& weights) {
-  return GridDistribution(columns, rows, [&](int row, std::span<double> out) {
-    std::copy_n(weights.begin() + row * columns, columns, out.begin());
-  });
+  GridDistribution grid(columns, rows);
+  for (int row = rows; row-- > 0;)  // In any order.
+    grid.set_row(row, std::span(weights).subspan(static_cast<size_t>(row * columns), static_cast<size_t>(columns)));
+  grid.finish();
+  return grid;
 }
 
 TEST(CellCdf, ProportionsAndEnds) {
@@ -47,6 +49,23 @@ TEST(CellCdf, ValuesAreWholeUnits) {
   for (size_t i = 0; i < cdf.size(); ++i) {
     EXPECT_EQ(cdf[i] * 0x1p24f, std::floor(cdf[i] * 0x1p24f));
     EXPECT_GT(cdf[i], i > 0 ? cdf[i - 1] : -1);
+  }
+}
+
+TEST(CellCdf, LongRowsAreTheFormulaCellByCell) {
+  // One unit of 2^-24 for each of the cells so far that count, and of the rest of the units the share of the sum so far.
+  for (const size_t n : {1, 127, 128, 129, 1000}) {
+    std::vector<double> weights(n);
+    for (size_t i = 0; i < n; ++i) weights[i] = i % 7 == 3 ? 0 : std::pow(1.01 + 0.37 * static_cast<double>(i % 11), 3);
+    double sum = 0, positive = 0;
+    for (const double w : weights) sum += w, positive += w > 0;
+    const auto cdf = cdf_of(weights);
+    double running = 0, given = 0;
+    for (size_t i = 0; i < n; ++i) {
+      running += weights[i], given += weights[i] > 0;
+      const double units = given + std::floor((0x1p24 - positive) * (running / sum));
+      EXPECT_EQ(cdf[i + 1], static_cast<float>((given == positive ? 0x1p24 : units) * 0x1p-24)) << n << ' ' << i;
+    }
   }
 }
 
