@@ -14,7 +14,6 @@ constexpr uint32_t kFirstLookSeed = 2000;
 constexpr uint32_t kStep = 256;
 static_assert(kStep % kRound == 0);
 
-Elapsed operator+(const Elapsed& a, const Elapsed& b) { return {a.wall + b.wall, a.cpu + b.cpu}; }
 Elapsed more(const Elapsed& a, const Elapsed& b) {
   return {std::max(0.0, a.wall - b.wall), std::max(0.0, a.cpu - b.cpu)};
 }

@@ -8,6 +8,7 @@
 #include "core/base/diagnostics.h"
 #include "core/base/effect.h"
 #include "core/base/render_space.h"
+#include "core/base/stopwatch.h"
 
 namespace whit {
 
@@ -21,6 +22,8 @@ struct PrepareContext {
   RenderSpace space;
   double scene_radius = 1;  ///< Render space: radius of a sphere around the origin that holds all geometry.
   int samples_per_pixel = 1;
+  /// What reading pictures takes is added here, or nowhere if null. Lights alone do, which are prepared one by one.
+  Elapsed* reading_pictures = nullptr;
 };
 
 /// Base of all plugins. Life: constructed with defaults, parameters bound, check(), effects(), and, when the

@@ -2,7 +2,6 @@
 // neither geometry (build_groups.h, build_geometry.h) nor light (build_lights.h).
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/scene/build_context.h"
 #include "core/scene/build_geometry.h"
@@ -95,20 +94,16 @@ void build_accel(const BuildContext& context, Scene& scene) {
   if (!problem.empty()) context.diagnostics.error(context.description().world_begin, problem);
 }
 
-using Clock = std::chrono::steady_clock;
-
-double seconds(Clock::time_point from, Clock::time_point to) {
-  return std::chrono::duration<double>(to - from).count();
-}
-
 }  // namespace
 
 std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const BuildOptions& options,
                                    TextureStore& textures, Diagnostics& diagnostics) {
   if (!options_complete(bound)) return nullptr;
+  Laps laps;
   read_live(bound, plan, diagnostics);
   drop_unneeded(plan, bound);
   auto scene = std::make_unique<Scene>();
+  BuildTimes& times = scene->build_times;
   scene->bound = std::move(bound);
   scene->plan = std::move(plan);
   const bool everything = scene->plan.everything_on;
@@ -118,26 +113,26 @@ std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const Buil
   if (!options_complete(scene->bound)) return nullptr;
   scene->accel = std::make_unique<Accel>(
       AccelOptions{.robust = options.robust_traversal, .second_look = scene->sampler().is_regular()});
-  const auto start = Clock::now();
+  times.inputs = laps.lap();
   Groups groups = load_groups(context, scene->bound.shapes);
-  const auto loaded = Clock::now();
+  times.geometry = laps.lap();
   const WorldSpace world = choose_spaces(context, groups);
   scene->space = world.space;
   context.scene_radius = world.radius;
   prepare_materials(context, *scene);
-  const auto prepared = Clock::now();
+  times.materials = laps.lap();
   const BakedGeometry geometry = bake_groups(context, groups, *scene);
-  const auto baked = Clock::now();
   place_instances(context, groups, *scene);
+  times.placing = laps.lap();
+  context.reading_pictures = &times.pictures;
   build_lights(context, geometry.lit, *scene);
   prepare_camera(context, options.quick, *scene);
   if (!options_complete(scene->bound)) return nullptr;
-  const auto placed = Clock::now();
+  times.lights = laps.lap() - times.pictures;
   if (!options.only_check) build_accel(context, *scene);
+  times.ray_tracer = laps.lap();
   scene->sort_keys = std::max(geometry.sort_keys, everything ? 2 : 0);
   scene->has_instances = kKnowsInstances && (!scene->instances.empty() || everything);
-  scene->build_seconds = {seconds(start, loaded), seconds(loaded, prepared), seconds(prepared, baked),
-                          seconds(placed, Clock::now())};
   if (diagnostics.has_errors() && !options.keep_going) return nullptr;
   return scene;
 }

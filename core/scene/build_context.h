@@ -14,7 +14,8 @@ struct BuildContext {
   const Scene& scene;  ///< As far as it is built; a step that builds on is handed what it changes.
   TextureStore& textures;
   Diagnostics& diagnostics;
-  double scene_radius = 1;  ///< In render space, from when that is chosen.
+  double scene_radius = 1;              ///< In render space, from when that is chosen.
+  Elapsed* reading_pictures = nullptr;  ///< PrepareContext::reading_pictures, while lights are prepared.
 
   const SceneDescription& description() const { return *scene.bound.description; }
   const ShapeDescription& shape(size_t i) const { return description().shapes[i]; }

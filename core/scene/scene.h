@@ -8,6 +8,7 @@
 
 #include "core/accel/accel.h"
 #include "core/base/render_space.h"
+#include "core/base/stopwatch.h"
 #include "core/image/texture_store.h"
 #include "core/scene/bound_scene.h"
 #include "core/scene/effect_plan.h"
@@ -101,12 +102,16 @@ struct BuildOptions {
   bool only_check = false;  ///< Only for what there is to say: nothing can be traced.
 };
 
-/// Where the time went that build_scene() took, in seconds.
-struct BuildSeconds {
-  double read = 0;        ///< Reading and making geometry.
-  double prepare = 0;     ///< Textures and materials.
-  double bake = 0;        ///< Geometry to render space.
-  double accelerate = 0;  ///< The ray tracer's own structures.
+/// Where the time went that build_scene() took. The parts are all of it.
+struct BuildTimes {
+  Elapsed
+      inputs;  ///< Files that decide whether textures and materials can be used, and tables of samplers and filters.
+  Elapsed geometry;    ///< Reading and making it.
+  Elapsed materials;   ///< And textures.
+  Elapsed placing;     ///< Geometry to render space, copies to their places; surfaces that lie in one another.
+  Elapsed pictures;    ///< Reading those that lights are made of.
+  Elapsed lights;      ///< All else of lights, and the camera.
+  Elapsed ray_tracer;  ///< Its own structures, and what shadow rays end on.
 };
 
 struct Scene {
@@ -136,7 +141,7 @@ struct Scene {
   bool has_instances = false;  ///< Points are taken to render space.
   std::unique_ptr<LightChoice> light_choice;  ///< Null where the integrator samples every light.
   std::unique_ptr<Accel> accel;
-  BuildSeconds build_seconds;
+  BuildTimes build_times;
 
   const Camera& camera() const { return *bound.camera.plugin; }
   const Film& film() const { return *bound.film.plugin; }

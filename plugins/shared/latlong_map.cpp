@@ -229,7 +229,9 @@ std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, cons
                                                    const PrepareContext& ctx) {
   Texels texels;
   {
+    const Stopwatch watch;
     Result<Image> image = read_image(path);
+    if (ctx.reading_pictures) *ctx.reading_pictures += watch.elapsed();
     if (!image.ok()) {
       ctx.diagnostics->file_error(ctx.statement, image.error);
       return nullptr;

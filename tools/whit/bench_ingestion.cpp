@@ -121,9 +121,10 @@ void measure_ply(const std::string& path, int runs, Ingestion& out) {
         read_scene_text("ply", fmt::format("{}Shape \"plymesh\" \"string filename\" \"{}\"\nWorldEnd\n", kHead, path));
     const BuiltWorld built = build_world(plan_world(scene_file.worlds.at(0), *scene_file.sources));
     if (!built.scene || built.said.has_errors()) throw std::runtime_error("the mesh made for measuring has errors");
-    const BuildSeconds& seconds = built.scene->build_seconds;
+    const BuildTimes& times = built.scene->build_times;
     out.triangles = static_cast<double>(built.scene->triangle_count());
-    return std::array{out.ply_megabytes / seconds.read, out.triangles / 1e6 / (seconds.bake + seconds.accelerate)};
+    return std::array{out.ply_megabytes / times.geometry.wall,
+                      out.triangles / 1e6 / (times.placing.wall + times.ray_tracer.wall)};
   });
   out.ply_mb_per_s = read, out.build_mtris_per_s = build;
 }

@@ -48,6 +48,8 @@ int print_normal_form(const RenderSettings& s) {
 }  // namespace
 
 int render_command(const Arguments& args) {
+  BeforeScene before{process_age(), {}};
+  const Stopwatch reading_flags;
   RenderSettings settings;
   int code = kDone;
   if (!read_render_flags(args, settings, code)) return code;
@@ -58,8 +60,10 @@ int render_command(const Arguments& args) {
                                                     static_cast<size_t>(settings.threads));
   }
   RenderStats stats(settings.scenes.size());
+  before.flags = reading_flags.elapsed();
   for (const std::string& scene : settings.scenes) {
-    if (code = render_file(settings, scene, stats); code != kDone) break;
+    if (code = render_file(settings, scene, before, stats); code != kDone) break;
+    before = {};
   }
   return std::max(code, write_stats(stats, settings.stats_file));
 }

@@ -26,12 +26,14 @@ namespace {
 /// One scene file on its way to pictures.
 class RenderJob {
  public:
-  RenderJob(const RenderSettings& settings, std::string path, RenderStats& stats)
+  RenderJob(const RenderSettings& settings, std::string path, const BeforeScene& before, RenderStats& stats)
       : settings_(settings),
         path_(std::move(path)),
         stats_(stats),
         file_(read_scene(path_)),
-        parsed_memory_(resident_memory()) {}
+        parsed_memory_(resident_memory()) {
+    times_.program = before.program, times_.flags = before.flags;
+  }
 
   int run() {
     const std::string problem = override_worlds(file_, settings_.effects.overrides);
@@ -51,7 +53,7 @@ class RenderJob {
       const int code = picture_of(world);
       if (code != kDone && code != kLimit) return code;
       worst = std::max(worst, code);
-      times_ = {};
+      times_ = {}, world_started_ = {};
     }
     return worst;
   }
@@ -109,7 +111,9 @@ class RenderJob {
     if (int code = report(planned.said); code != kDone) return code;
     if (!planned.bound.film.plugin) return kSceneError;
 
+    const Stopwatch planning_output;
     const OutputPlan output = plan_output(output_request(), planned.bound.film);
+    times_.output = planning_output.elapsed();
     if (int code = report_output(output.said); code != kDone) return code;
     for (const std::string& name : {output.main_file, output.display_file}) {
       if (name.empty() || written_.insert(name).second) continue;
@@ -168,7 +172,10 @@ class RenderJob {
 
   int trace_and_write(BuiltWorld& built, const OutputPlan& output) {
     DisplayServer viewer;
+    const Stopwatch connecting;
     const RenderOptions options = render_options(built, output.aovs, viewer);
+    times_.output += connecting.elapsed();
+    times_.ready = times_.program + times_.flags + world_started_.elapsed();
     if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
     const RenderedWorld rendered = trace(built, options);
     return write_and_say(built, rendered, output, viewer);
@@ -272,6 +279,7 @@ class RenderJob {
   }
 
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  Stopwatch world_started_;
   const RenderSettings& settings_;
   const std::string path_;
   RenderStats& stats_;
@@ -287,8 +295,9 @@ class RenderJob {
 
 }  // namespace
 
-int render_file(const RenderSettings& settings, const std::string& path, RenderStats& stats) {
-  return RenderJob(settings, path, stats).run();
+int render_file(const RenderSettings& settings, const std::string& path, const BeforeScene& before,
+                RenderStats& stats) {
+  return RenderJob(settings, path, before, stats).run();
 }
 
 }  // namespace whit

@@ -10,17 +10,44 @@
 namespace whit {
 namespace {
 
+std::vector<StartPart> build_parts(const BuildTimes& b) {
+  return {{"inputs", "inputs read", b.inputs},
+          {"geometry", "geometry read", b.geometry},
+          {"materials", "textures and materials prepared", b.materials},
+          {"placing", "geometry moved to render space", b.placing},
+          {"pictures", "pictures of lights read", b.pictures},
+          {"lights", "lights prepared", b.lights},
+          {"ray_tracer", "ray tracer built", b.ray_tracer}};
+}
+
+/// Parts of a start that take no millisecond are not worth a word.
+constexpr double kShown = 0.5e-3;
+
+/// "build 257 ms (geometry read in 40 ms, ray tracer built in 163 ms)": what a build took, and which parts of it took long.
+std::string build_text(const StepTimes& times, const BuildTimes& build) {
+  constexpr double kLong = 0.01, kLargeShare = 0.1;
+  std::string parts;
+  for (const StartPart& part : build_parts(build)) {
+    if (part.elapsed.wall < std::max(kLong, kLargeShare * times.build.wall)) continue;
+    parts += fmt::format("{}{} in {}", parts.empty() ? " (" : ", ", part.words, duration_text(part.elapsed.wall));
+  }
+  return duration_text(times.build.wall) + parts + (parts.empty() ? "" : ")");
+}
+
 void more_statistics(const RenderOutcome& outcome) {
   const Scene& scene = outcome.scene;
   const RenderStatistics& s = outcome.result.statistics;
   const StepTimes& times = outcome.times;
   const TextureStatistics t = outcome.textures.statistics();
-  const BuildSeconds& b = scene.build_seconds;
-  say(fmt::format(
-      "ready to trace after {}: geometry read in {}, textures and materials prepared in {}, geometry moved to "
-      "render space in {}, ray tracer built in {}; {} resident after parsing.",
-      duration_text(times.parse.wall + times.plan.wall + times.build.wall), duration_text(b.read),
-      duration_text(b.prepare), duration_text(b.bake), duration_text(b.accelerate), bytes_text(outcome.parsed_memory)));
+  std::string parts;
+  for (const StartPart& part : start_parts(times, scene.build_times)) {
+    if (part.elapsed.wall < kShown && part.elapsed.cpu < kShown) continue;
+    parts += fmt::format("{}{} in {} ({})", parts.empty() ? ": " : ", ", part.words, duration_text(part.elapsed.wall),
+                         duration_text(part.elapsed.cpu));
+  }
+  say(fmt::format("ready to trace after {} ({} of processor time){}; {} resident after parsing.",
+                  duration_text(times.ready.wall), duration_text(times.ready.cpu), parts,
+                  bytes_text(outcome.parsed_memory)));
   say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
                   bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(), scene.instances.size(),
                   scene.lights.size()));
@@ -35,6 +62,17 @@ void more_statistics(const RenderOutcome& outcome) {
 }
 
 }  // namespace
+
+std::vector<StartPart> start_parts(const StepTimes& times, const BuildTimes& build) {
+  std::vector<StartPart> parts = {{"program", "program loaded", times.program},
+                                  {"flags", "flags read", times.flags},
+                                  {"parse", "scene parsed", times.parse},
+                                  {"plan", "effects planned", times.plan},
+                                  {"output", "output planned", times.output}};
+  const std::vector<StartPart> built = build_parts(build);
+  parts.insert(parts.end(), built.begin(), built.end());
+  return parts;
+}
 
 void report_invalid(const RenderStatistics& s) {
   say(fmt::format(
@@ -53,9 +91,11 @@ void report_invalid(const RenderStatistics& s) {
 void summarise(const RenderOutcome& outcome, bool with_statistics) {
   const auto& [scene, r, output, textures, times, unread_files, parsed_memory] = outcome;
   const RenderStatistics& s = r.statistics;
-  say(fmt::format("parse {}, plan {}, build {}, render {}, write {} on {} thread{}.", duration_text(times.parse.wall),
-                  duration_text(times.plan.wall), duration_text(times.build.wall), duration_text(times.render.wall),
-                  duration_text(times.write.wall), r.threads, r.threads == 1 ? "" : "s"));
+  say(fmt::format("start {}, parse {}, plan {}, build {}, render {}, write {} on {} thread{}.",
+                  duration_text(times.program.wall + times.flags.wall + times.output.wall),
+                  duration_text(times.parse.wall), duration_text(times.plan.wall), build_text(times, scene.build_times),
+                  duration_text(times.render.wall), duration_text(times.write.wall), r.threads,
+                  r.threads == 1 ? "" : "s"));
   const auto if_any = [](int64_t rays, const char* what) {
     return rays > 0 ? fmt::format(", {} {}", count_text(rays), what) : std::string();
   };

@@ -19,6 +19,14 @@ Json seconds(const StepTimes& t, double Elapsed::*clock) {
                       {"write", t.write.*clock}};
 }
 
+/// Until rendering began, by one of the two clocks: all of it, and its parts.
+Json start(const RenderOutcome& outcome, double Elapsed::*clock) {
+  Json::Object out{{"ready", outcome.times.ready.*clock}};
+  for (const StartPart& part : start_parts(outcome.times, outcome.scene.build_times))
+    out.emplace_back(part.key, part.elapsed.*clock);
+  return out;
+}
+
 Json rays(const RenderStatistics& s) {
   return Json::Object{
       {"camera", s.camera_rays},     {"reflection", s.reflection_rays}, {"refraction", s.refraction_rays},
@@ -84,6 +92,8 @@ void RenderStats::add(const RenderSettings& settings, const std::string& scene, 
   const RenderStatistics& s = outcome.result.statistics;
   pictures_.push_back(Json::Object{{"seconds", seconds(outcome.times, &Elapsed::wall)},
                                    {"cpu_seconds", seconds(outcome.times, &Elapsed::cpu)},
+                                   {"start", Json::Object{{"seconds", start(outcome, &Elapsed::wall)},
+                                                          {"cpu_seconds", start(outcome, &Elapsed::cpu)}}},
                                    {"rays", rays(s)},
                                    {"samples", s.camera_samples},
                                    {"memory_bytes", static_cast<int64_t>(peak_memory())},

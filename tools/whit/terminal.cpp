@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <map>
+#include <sstream>
 #include <tuple>
 #include <vector>
 
@@ -171,6 +173,23 @@ double memory_status(const std::string& key) {
 }
 
 }  // namespace
+
+Elapsed process_age() {
+  const double cpu = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+  // proc(5): the 22nd field, which the name in parentheses is the second of, is when the process began, in ticks.
+  constexpr int kAfterName = 20;
+  std::ifstream file("/proc/self/stat");
+  std::string text, began;
+  std::getline(file, text);
+  std::istringstream fields(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+  for (int i = 0; i < kAfterName && fields >> began;) ++i;
+  timespec now{};
+  if (!fields || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return {cpu, cpu};
+  const double tick = 1.0 / static_cast<double>(sysconf(_SC_CLK_TCK));
+  const double most =
+      static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - tick * std::stod(began);
+  return {std::clamp(cpu, std::max(most - tick, 0.0), std::max(most, tick)), cpu};
+}
 
 double resident_memory() { return memory_status("VmRSS:"); }
 

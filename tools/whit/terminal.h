@@ -5,6 +5,7 @@
 #include <string>
 
 #include "core/base/diagnostics.h"
+#include "core/base/stopwatch.h"
 #include "parser/source.h"
 
 namespace whit {
@@ -63,5 +64,9 @@ std::string count_text(double count);
 /// The resident size of this process in bytes, 0 where it is not known, and the largest so far.
 double resident_memory();
 double peak_memory();
+
+/// What this process has taken so far: loading the program, if asked first of all. The clock time is right to a hundredth
+/// of a second, for as often the system's clock of processes ticks; within that it is the processor time.
+Elapsed process_age();
 
 }  // namespace whit
