@@ -1,7 +1,9 @@
 // Boxes under transforms.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/base/vec.h"
 
@@ -14,6 +16,13 @@ inline std::array<Vec3d, 8> corners_of(const Box3d& box) {
     corners[c] = {c & 1 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 4 ? box.max.z : box.min.z};
   }
   return corners;
+}
+
+/// The smallest box around a triangle. Without branches, which extendBy() has: it is chance which corner is the least.
+inline Box3d triangle_box(const Vec3d& a, const Vec3d& b, const Vec3d& c) {
+  const auto least = [&](int k) { return std::min(std::min(a[k], b[k]), c[k]); };
+  const auto most = [&](int k) { return std::max(std::max(a[k], b[k]), c[k]); };
+  return {{least(0), least(1), least(2)}, {most(0), most(1), most(2)}};
 }
 
 /// The smallest box around a box under `m`; empty when the box is.

@@ -113,8 +113,8 @@ std::vector<bool> find_repeated(const std::vector<uint32_t>& indices, size_t ver
     last = first + 1;
     while (last < triangles && rotated(order[last])[0] == rotated(order[first])[0]) ++last;
     if (last - first < 2) continue;
-    std::stable_sort(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last),
-                     [&](uint32_t a, uint32_t b) { return rotated(a) < rotated(b); });
+    std::sort(order.begin() + static_cast<ptrdiff_t>(first), order.begin() + static_cast<ptrdiff_t>(last),
+              [&](uint32_t a, uint32_t b) { return std::pair(rotated(a), a) < std::pair(rotated(b), b); });
     for (size_t k = first + 1; k < last; ++k) {
       if (rotated(order[k]) == rotated(order[k - 1])) repeated[order[k]] = true;
     }

@@ -8,8 +8,14 @@
 namespace whit {
 namespace {
 
-Vec3d point_of(const std::span<const double>& flat, size_t i) {
+template <class Numbers>
+Vec3d point_of(const Numbers& flat, size_t i) {
   return {flat[3 * i], flat[3 * i + 1], flat[3 * i + 2]};
+}
+
+/// Writes the i-th of vectors that lie flat.
+void put(std::vector<float>& to, size_t i, const Vec3d& v) {
+  for (int c = 0; c < 3; ++c) to[3 * i + static_cast<size_t>(c)] = static_cast<float>(v[c]);
 }
 
 void append(std::vector<float>& to, const Vec3d& v) {
@@ -29,25 +35,18 @@ bool has_area(const Mesh& mesh, uint32_t a, uint32_t b, uint32_t c) {
 std::unique_ptr<Mesh> bake_vertices(const MeshData& data, const Mat4d& object_to_group) {
   auto mesh = std::make_unique<Mesh>();
   const size_t vertices = data.positions.size() / 3;
-  mesh->positions.reserve(3 * vertices + 1);
-  for (size_t i = 0; i < vertices; ++i) {
-    append(mesh->positions, transform_point(object_to_group, point_of(data.positions, i)));
-  }
-  mesh->positions.push_back(0);
+  mesh->positions.resize(3 * vertices + 1);
+  for (size_t i = 0; i < vertices; ++i)
+    put(mesh->positions, i, transform_point(object_to_group, point_of(data.positions, i)));
   if (!data.normals.empty()) {
     const Mat4d n = normal_matrix(object_to_group);
-    mesh->normals.reserve(data.normals.size());
-    for (size_t i = 0; i < vertices; ++i) {
-      append(mesh->normals,
-             transform_vector(n, {data.normals[3 * i], data.normals[3 * i + 1], data.normals[3 * i + 2]}));
-    }
+    mesh->normals.resize(3 * vertices);
+    for (size_t i = 0; i < vertices; ++i) put(mesh->normals, i, transform_vector(n, point_of(data.normals, i)));
   }
   if (!data.tangents.empty()) {
-    mesh->tangents.reserve(data.tangents.size());
-    for (size_t i = 0; i < vertices; ++i) {
-      append(mesh->tangents, transform_vector(object_to_group, {data.tangents[3 * i], data.tangents[3 * i + 1],
-                                                                data.tangents[3 * i + 2]}));
-    }
+    mesh->tangents.resize(3 * vertices);
+    for (size_t i = 0; i < vertices; ++i)
+      put(mesh->tangents, i, transform_vector(object_to_group, point_of(data.tangents, i)));
   }
   mesh->uvs = data.uvs;
   return mesh;

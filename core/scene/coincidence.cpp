@@ -28,12 +28,13 @@ struct Triangle {
   Vec3d a, b, c;
   double tolerance;  ///< How far rounding may have moved its plane.
   Vec3d normal() const { return (b - a).cross(c - a).normalized(); }
-  Box3d bounds() const {
-    Box3d box(a);
-    box.extendBy(b), box.extendBy(c);
-    return box;
-  }
+  Box3d bounds() const { return triangle_box(a, b, c); }
 };
+
+/// Without what a Triangle knows beside its corners: most triangles are only asked where they are.
+Box3d box_of(const Mesh& mesh, size_t prim) {
+  return triangle_box(mesh.corner(prim, 0), mesh.corner(prim, 1), mesh.corner(prim, 2));
+}
 
 Triangle triangle_of(const Mesh& mesh, size_t prim) {
   Triangle t{mesh.corner(prim, 0), mesh.corner(prim, 1), mesh.corner(prim, 2), kExactTolerance};
@@ -253,7 +254,7 @@ bool coincide(const AnalyticShape& lower, const AnalyticShape& upper) {
 Box3d bounds_of(const SceneShape& shape) {
   Box3d box;
   if (shape.mesh) {
-    for (size_t i = 0; i < shape.mesh->triangle_count(); ++i) box.extendBy(triangle_of(*shape.mesh, i).bounds());
+    for (size_t i = 0; i < shape.mesh->triangle_count(); ++i) box.extendBy(box_of(*shape.mesh, i));
   } else {
     box = transform_box(shape.analytic->object_to_scene(), shape.analytic->object_bounds());
   }
@@ -327,7 +328,7 @@ class Finder {
     const Mesh& mesh = mesh_of(shape);
     std::vector<std::pair<double, size_t>> found;
     for (size_t t = 0; t < mesh.triangle_count(); ++t) {
-      const Box3d bounds = triangle_of(mesh, t).bounds();
+      const Box3d bounds = box_of(mesh, t);
       if (bounds.intersects(box)) found.emplace_back(bounds.min.x, t);
     }
     std::sort(found.begin(), found.end());
@@ -375,13 +376,13 @@ class Finder {
     size_t begin = 0;
     double widest = 0;
     for (const size_t j : us) {
-      const Box3d box = triangle_of(mesh_of(upper), j).bounds();
+      const Box3d box = box_of(mesh_of(upper), j);
       widest = std::max(widest, box.max.x - box.min.x);
     }
     for (const size_t i : ls) {
-      const Box3d box = triangle_of(mesh_of(lower), i).bounds();
+      const Box3d box = box_of(mesh_of(lower), i);
       const double from = box.min.x - widest - 4 * kExactTolerance, to = box.max.x + 4 * kExactTolerance;
-      const auto start = [&](size_t k) { return triangle_of(mesh_of(upper), us[k]).bounds().min.x; };
+      const auto start = [&](size_t k) { return box_of(mesh_of(upper), us[k]).min.x; };
       while (begin < us.size() && start(begin) < from) ++begin;
       for (size_t k = begin; k < us.size() && start(k) <= to; ++k) {
         if (++comparisons_ > kMostComparisons) return;

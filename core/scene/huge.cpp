@@ -42,10 +42,8 @@ Vec3d corner(const MeshData& mesh, size_t i) {
   return {mesh.positions[v], mesh.positions[v + 1], mesh.positions[v + 2]};
 }
 
-Box3d triangle_box(const MeshData& mesh, size_t t) {
-  Box3d box(corner(mesh, 3 * t));
-  box.extendBy(corner(mesh, 3 * t + 1)), box.extendBy(corner(mesh, 3 * t + 2));
-  return box;
+Box3d box_of(const MeshData& mesh, size_t t) {
+  return triangle_box(corner(mesh, 3 * t), corner(mesh, 3 * t + 1), corner(mesh, 3 * t + 2));
 }
 
 /// What there is of a mesh beside triangles kHuge times larger, if it has such.
@@ -53,14 +51,14 @@ Box3d small_part(const MeshData& mesh) {
   const size_t n = mesh.indices.size() / 3;
   double largest = 0, smallest = std::numeric_limits<double>::infinity();
   for (size_t t = 0; t < n; ++t) {
-    const double size2 = triangle_box(mesh, t).size().length2();
+    const double size2 = box_of(mesh, t).size().length2();
     largest = std::max(largest, size2), smallest = std::min(smallest, size2);
   }
   Box3d part;
   const double limit = largest / (kHuge * kHuge);
   if (!(smallest < limit)) return part;
   for (size_t t = 0; t < n; ++t) {
-    const Box3d box = triangle_box(mesh, t);
+    const Box3d box = box_of(mesh, t);
     if (box.size().length2() < limit) part.extendBy(box);
   }
   return part;
@@ -89,8 +87,7 @@ size_t CloseUps::count_below(double size) const {
 bool CloseUps::is_far(const Box3d& box) const { return extent_of(box, from_) > reach_; }
 
 bool CloseUps::makes_huge(const Vec3d& a, const Vec3d& b, const Vec3d& c) const {
-  Box3d box(a);
-  box.extendBy(b), box.extendBy(c);
+  const Box3d box = triangle_box(a, b, c);
   if (is_far(box)) return true;
   const double size = size_of(box);
   const auto is_near = [&](const Vec3d& p, double reach) {
