@@ -40,8 +40,11 @@ int TileGrid::own_unit(Vec2i pixel) const {
   return (at.y * columns + at.x) * colours + (colours == 1 ? 0 : (pixel.x + pixel.y) & 1);
 }
 
-TileSums::TileSums(Vec2i tile, const FilterTable& filter, int size, bool blocks)
-    : reach_(tile, filter, size), sums_(4 * reach_.pixels()), blocks_(blocks ? 4 * kBlocks * reach_.pixels() : 0) {}
+TileSums::TileSums(Vec2i tile, const FilterTable& filter, int size, bool blocks, double* zeros)
+    : reach_(tile, filter, size),
+      own_(zeros ? 0 : 4 * reach_.pixels()),
+      sums_(zeros ? zeros : own_.data()),
+      blocks_(blocks ? 4 * kBlocks * reach_.pixels() : 0) {}
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance, int block) {
   const double value[4] = {radiance.x, radiance.y, radiance.z, 1};
@@ -118,18 +121,23 @@ void TileSums::halve_blocks() {
 }
 
 void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
-  picture.rgb.assign(3 * static_cast<size_t>(picture.width()) * static_cast<size_t>(picture.height()), 0.0f);
+  const auto width = static_cast<size_t>(picture.width());
+  picture.rgb.resize(3 * width * static_cast<size_t>(picture.height()));
+  std::vector<TileSpan> columns;
+  for (int x = picture.window.min.x; x < picture.window.max.x; ++x)
+    columns.push_back(film.grid.columns_around(x, film.filter));
   tbb::parallel_for(0, picture.height(), [&](int row) {
-    for (int column = 0; column < picture.width(); ++column) {
-      const Vec2i pixel = picture.window.min + Vec2i(column, row);
+    const int y = picture.window.min.y + row;
+    const TileSpan rows = film.grid.rows_around(y, film.filter);
+    float* out = picture.rgb.data() + 3 * width * static_cast<size_t>(row);
+    for (size_t i = 0; i < width; ++i, out += 3) {
+      const int x = picture.window.min.x + static_cast<int>(i);
       double sum[4] = {0, 0, 0, 0};
-      film.each_around(pixel, [&](size_t unit) {
-        const double* s = film.sums[unit].at(pixel.x, pixel.y);
+      film.each_in(columns[i], rows, [&](size_t unit) {
+        const double* s = film.sums[unit].at(x, y);
         const double weight = film.weight(unit);
         for (int c = 0; s && c < 4; ++c) sum[c] += weight * s[c];
       });
-      float* out = &picture.rgb[3 * (static_cast<size_t>(row) * static_cast<size_t>(picture.width()) +
-                                     static_cast<size_t>(column))];
       for (int c = 0; c < 3; ++c)
         out[c] = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
     }

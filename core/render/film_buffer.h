@@ -64,6 +64,11 @@ class TileReach {
   std::vector<int> columns_;  ///< Of the filter, for the pixels that the sample being added reaches.
 };
 
+/// Columns or rows of tiles, the last one included.
+struct TileSpan {
+  int first, last;
+};
+
 /// The tiles of a picture, row by row, each of one unit or of two: those of its pixels whose x + y is even, and the odd.
 struct TileGrid {
   Vec2i first{0, 0};  ///< The first one's place on the fixed grid.
@@ -76,10 +81,29 @@ struct TileGrid {
   int tile_of(int p) const { return p >= 0 ? p / size : -((-p + size - 1) / size); }
   /// The unit that a pixel's own samples are in; -1 outside.
   int own_unit(Vec2i pixel) const;
+  /// Whose samples may reach pixels of that x, or of that y.
+  TileSpan columns_around(int x, const FilterTable& filter) const {
+    return {std::max(tile_of(x - filter.x_reach()) - first.x, 0),
+            std::min(tile_of(x + filter.x_reach()) - first.x, columns - 1)};
+  }
+  TileSpan rows_around(int y, const FilterTable& filter) const {
+    return {std::max(tile_of(y - filter.y_reach()) - first.y, 0),
+            std::min(tile_of(y + filter.y_reach()) - first.y, rows - 1)};
+  }
+  /// Calls body(number of the unit) for those of some tiles: row by row, left to right.
+  template <class Body>
+  void each_in(TileSpan x, TileSpan y, const Body& body) const {
+    for (int row = y.first; row <= y.last; ++row) {
+      for (int unit = (row * columns + x.first) * colours; unit < (row * columns + x.last + 1) * colours; ++unit)
+        body(static_cast<size_t>(unit));
+    }
+  }
   /// Calls body(number of the unit) for the units whose samples may reach a pixel: row by row, left to right, so that the
   /// order of additions depends on the pixel alone.
   template <class Body>
-  void each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const;
+  void each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const {
+    each_in(columns_around(pixel.x, filter), rows_around(pixel.y, filter), body);
+  }
 };
 
 /// Sums of the samples of one unit; and of four blocks of them, if wanted, from which the error can be told.
@@ -88,7 +112,11 @@ class TileSums {
   static constexpr int kTile = TileReach::kTile;
   static constexpr int kBlocks = 4;
 
-  TileSums(Vec2i tile, const FilterTable& filter, int size = kTile, bool blocks = false);
+  /// In memory of its own, or in `zeros`: numbers() doubles that are 0.
+  TileSums(Vec2i tile, const FilterTable& filter, int size = kTile, bool blocks = false, double* zeros = nullptr);
+  TileSums(TileSums&&) = default;
+  /// How many numbers a tile sums up.
+  static size_t numbers(const FilterTable& filter, int size) { return 4 * TileReach({0, 0}, filter, size).pixels(); }
   /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
   void add(float film_x, float film_y, const RGB& radiance, int block = 0);
   /// Adds n samples in their order, those that are `usable`. `block` says which each belongs to; null without blocks.
@@ -112,7 +140,8 @@ class TileSums {
                          const uint8_t* usable, const uint8_t* block);
 
   TileReach reach_;
-  std::vector<double> sums_;   ///< Double: a million floats of one size are added with an error of 1 %.
+  std::vector<double> own_;
+  double* sums_;               ///< Double: a million floats of one size are added with an error of 1 %.
   std::vector<float> blocks_;  ///< Differences between blocks need no more, and there are four.
 };
 
@@ -136,10 +165,14 @@ struct FilmUnits {
 
   double weight(size_t unit) const { return weights.empty() ? 1.0 : weights[unit]; }
   template <class Body>
-  void each_around(Vec2i pixel, const Body& body) const {
-    grid.each_around(pixel, filter, [&](size_t unit) {
+  void each_in(TileSpan x, TileSpan y, const Body& body) const {
+    grid.each_in(x, y, [&](size_t unit) {
       if (colour < 0 || static_cast<int>(unit & 1) == colour) body(unit);
     });
+  }
+  template <class Body>
+  void each_around(Vec2i pixel, const Body& body) const {
+    each_in(grid.columns_around(pixel.x, filter), grid.rows_around(pixel.y, filter), body);
   }
 };
 
@@ -169,18 +202,6 @@ void TileReach::each_reached(float film_x, float film_y, const Body& body) {
     const float* weights = filter_->row(static_cast<float>(y) - dy);
     const int row = number(px0, y);
     for (int k = 0; k <= px1 - px0; ++k) body(row + k, weights[columns_[static_cast<size_t>(k)]]);
-  }
-}
-
-template <class Body>
-void TileGrid::each_around(Vec2i pixel, const FilterTable& filter, const Body& body) const {
-  const int x0 = std::max(tile_of(pixel.x - filter.x_reach()) - first.x, 0);
-  const int x1 = std::min(tile_of(pixel.x + filter.x_reach()) - first.x, columns - 1);
-  const int y0 = std::max(tile_of(pixel.y - filter.y_reach()) - first.y, 0);
-  const int y1 = std::min(tile_of(pixel.y + filter.y_reach()) - first.y, rows - 1);
-  for (int y = y0; y <= y1; ++y) {
-    for (int unit = (y * columns + x0) * colours; unit < (y * columns + x1 + 1) * colours; ++unit)
-      body(static_cast<size_t>(unit));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "core/batch/zero_pages.h"
 #include "core/render/flush_denormals.h"
 #include "core/render/trace.h"
 #include "core/scene/alpha.h"
@@ -108,12 +109,14 @@ struct FilmRender::Impl {
     window.window = crop_pixels(window.resolution, options.crop_given ? options.crop : crop);
     sampled = sampled_pixels(scene, filter, window.window);
     grid = grid_over(sampled, options.adaptive);
+    const size_t numbers = TileSums::numbers(filter, grid.size);
+    memory = ZeroPages<double>(numbers * grid.units());
     sums.reserve(grid.units());
     if (aovs.any()) aov_tiles.reserve(grid.units());
     for (int y = 0; y < grid.rows; ++y) {
       for (int x = 0; x < grid.columns * grid.colours; ++x) {
         const Vec2i tile = grid.first + Vec2i(x / grid.colours, y);
-        sums.emplace_back(tile, filter, grid.size, options.blocks);
+        sums.emplace_back(tile, filter, grid.size, options.blocks, memory.data() + numbers * sums.size());
         if (aovs.any()) aov_tiles.emplace_back(aovs, tile, filter, grid.size);
       }
     }
@@ -323,6 +326,7 @@ struct FilmRender::Impl {
   Picture window;  ///< Without colours.
   Box2i sampled;
   TileGrid grid;
+  ZeroPages<double> memory;        ///< Of the sums.
   std::vector<TileSums> sums;      ///< By unit.
   std::vector<AovTile> aov_tiles;  ///< As many, or none.
   std::vector<uint32_t> have;      ///< Samples per pixel of each unit.
