@@ -74,6 +74,7 @@ void DisplayServer::create(const std::string& name, Vec2i size) {
 
 void DisplayServer::update(const Box2i& window, std::span<const float> rgb) {
   std::lock_guard lock(mutex_);
+  if (socket_ < 0) return;
   for (size_t c = 0; c < 3; ++c) {
     Packet p(Message::UpdateImage);
     p.put(uint8_t{0});
