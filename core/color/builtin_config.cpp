@@ -80,12 +80,6 @@ void add_space(const ocio::ConfigRcPtr& config, const char* name, const ocio::Tr
 
 }  // namespace
 
-float srgb_encode(float v) {
-  if (!(v > 0)) return 0;
-  if (v >= 1) return 1;
-  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
-}
-
 ocio::ConstConfigRcPtr make_builtin_config(float exposure) {
   const ocio::ConfigRcPtr config = ocio::Config::Create()->createEditableCopy();
   config->setVersion(2, 1);

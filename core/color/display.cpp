@@ -120,13 +120,15 @@ std::vector<std::string> DisplayTransform::view_names() const { return impl_->vi
 
 void DisplayTransform::apply(float* rgb, size_t n_pixels) const {
   const size_t n = 3 * n_pixels;
-  for (size_t i = 0; i < n; ++i) {
-    const float v = rgb[i] * impl_->gain;
-    rgb[i] = std::isnan(v) ? 0 : std::clamp(v, -kBrightest, kBrightest);
-  }
+  const float gain = impl_->gain;
   if (!impl_->processor) {
-    for (size_t i = 0; i < n; ++i) rgb[i] = srgb_encode(rgb[i]);
+#pragma omp simd
+    for (size_t i = 0; i < n; ++i) rgb[i] = srgb_encode(rgb[i] * gain);
     return;
+  }
+  for (size_t i = 0; i < n; ++i) {
+    const float v = rgb[i] * gain;
+    rgb[i] = std::isnan(v) ? 0 : std::clamp(v, -kBrightest, kBrightest);
   }
   constexpr size_t kMost = size_t{1} << 24;  // pixels of one call: OpenColorIO counts in long, but works by lines
   for (size_t first = 0; first < n_pixels; first += kMost) {

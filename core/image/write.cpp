@@ -63,10 +63,9 @@ template <class T>
 std::vector<unsigned char> quantise_all(std::span<const float> values) {
   constexpr float kMost = static_cast<T>(~T{0});
   std::vector<unsigned char> bytes(values.size() * sizeof(T));
-  for (size_t i = 0; i < values.size(); ++i) {
-    const T v = quantise<T>(values[i], kMost);
-    std::memcpy(bytes.data() + i * sizeof(T), &v, sizeof(T));
-  }
+  T* const out = reinterpret_cast<T*>(bytes.data());  // memory from new fits any number
+#pragma omp simd
+  for (size_t i = 0; i < values.size(); ++i) out[i] = quantise<T>(values[i], kMost);
   return bytes;
 }
 
