@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
+#include "core/batch/zero_pages.h"
 #include "tests/plugins/make_plugin.h"
 
 namespace whit {
@@ -115,6 +117,31 @@ TEST(TileSums, AFilterReachesBothSidesAlike) {
   EXPECT_EQ(pixels.front().y, 5);
   EXPECT_EQ(pixels.back().x, 7);
   EXPECT_EQ(pixels.back().y, 8);
+}
+
+TEST(TileSums, ItIsTheSameInMemoryThatItIsGiven) {
+  const auto filter = make_filter("gaussian", 2);
+  const FilterTable table(*filter.plugin);
+  // A tile of 8 x 8 and two pixels around it, of four numbers each: 4 (8 + 2 2)^2.
+  constexpr int kSize = 8;
+  ASSERT_EQ(TileSums::numbers(table, kSize), 576u);
+  constexpr size_t kTiles = 3;
+  const ZeroPages<double> memory(kTiles * 576);
+  EXPECT_EQ(memory.size(), kTiles * 576);
+  EXPECT_TRUE(std::all_of(memory.data(), memory.data() + memory.size(), [](double v) { return v == 0; }));
+  std::vector<TileSums> given;
+  for (size_t i = 0; i < kTiles; ++i)
+    given.emplace_back(Vec2i(static_cast<int>(i), 0), table, kSize, false, memory.data() + 576 * i);
+  for (size_t i = 0; i < kTiles; ++i) {
+    TileSums own(Vec2i(static_cast<int>(i), 0), table, kSize);
+    for (TileSums* sums : {&own, &given[i]}) sums->add(8.0f * static_cast<float>(i) + 3.3f, 4.6f, RGB(1, 2, 3));
+    const int left = kSize * static_cast<int>(i) - 2;
+    for (int y = -2; y < kSize + 2; ++y) {
+      for (int x = left; x < left + kSize + 4; ++x) {
+        for (int c = 0; c < 4; ++c) EXPECT_EQ(own.at(x, y)[c], given[i].at(x, y)[c]) << x << ' ' << y;
+      }
+    }
+  }
 }
 
 TEST(TileSums, NothingOutsideItsReach) {
