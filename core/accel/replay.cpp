@@ -88,6 +88,7 @@ class Replay {
 };
 
 bool is_usable(const Accel& accel, RayKind kind, RayCall call) {
+  if (call == RayCall::StreamCoherent) return kHasStreams && kind != RayKind::Shadow && !accel.has_instances();
   return call != RayCall::Packet16Coherent || kind != RayKind::Shadow || !accel.has_instances();
 }
 
@@ -97,6 +98,7 @@ double replay_seconds(const Accel& accel, const RayRecord& record, RayKind kind,
   const auto start = std::chrono::steady_clock::now();
   switch (call) {
     case RayCall::Single: shadow ? replay.run<1, RTCRay>() : replay.run<1, RTCRayHit>(); break;
+    case RayCall::StreamCoherent: replay.run<kStream, RayHitStream>(); break;
     case RayCall::Packet8: shadow ? replay.run<8, RTCRay8>() : replay.run<8, RTCRayHit8>(); break;
     default: shadow ? replay.run<16, RTCRay16>() : replay.run<16, RTCRayHit16>(); break;
   }

@@ -31,12 +31,14 @@ class RayRecord {
   std::array<Rays, 3> rays_;
 };
 
-/// How Embree is called: ray by ray, or in packets with or without the hint that neighbours are alike.
-enum class RayCall : uint8_t { Single, Packet8, Packet16, Packet16Coherent };
-constexpr std::array<RayCall, 4> kRayCalls{RayCall::Single, RayCall::Packet8, RayCall::Packet16,
-                                           RayCall::Packet16Coherent};
+/// How Embree is called: ray by ray, in packets with or without the hint that neighbours are alike, or in streams of 64
+/// with it.
+enum class RayCall : uint8_t { Single, Packet8, Packet16, Packet16Coherent, StreamCoherent };
+constexpr std::array<RayCall, 5> kRayCalls{RayCall::Single, RayCall::Packet8, RayCall::Packet16,
+                                           RayCall::Packet16Coherent, RayCall::StreamCoherent};
 
-/// Whether rays of a kind can be traced in that way: coherent packets of shadow rays cannot where there are instances.
+/// Whether rays of a kind can be traced in that way: coherent packets of shadow rays cannot where there are instances, and
+/// streams are for nearest hits without.
 bool is_usable(const Accel& accel, RayKind kind, RayCall call);
 
 /// Seconds that Embree takes for a record's rays of one kind, called in one way, on one thread: loading packets from

@@ -56,6 +56,7 @@ std::string call_name(RayCall call) {
     case RayCall::Packet8: return "8";
     case RayCall::Packet16: return "16";
     case RayCall::Packet16Coherent: return "16 coherent";
+    case RayCall::StreamCoherent: return "64 coherent";
   }
   return "";
 }
