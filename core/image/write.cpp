@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <limits>
 
 #include "core/image/encode.h"
 #include "core/image/oiio/module.h"
@@ -72,8 +73,13 @@ std::vector<unsigned char> quantise_all(std::span<const float> values) {
 // True if a value that goes into a half channel is finite but beyond half's range.
 bool exceeds_half(const OutputImage& image) {
   auto beyond = [](std::span<const float> values) {
-    return std::any_of(values.begin(), values.end(),
-                       [](float v) { return std::isfinite(v) && std::abs(v) > kHalfMax; });
+    int found = 0;
+#pragma omp simd reduction(| : found)
+    for (size_t i = 0; i < values.size(); ++i) {
+      const float v = std::abs(values[i]);
+      found |= static_cast<int>(v > kHalfMax) & static_cast<int>(v <= std::numeric_limits<float>::max());
+    }
+    return found != 0;
   };
   return beyond(image.rgb) || std::any_of(image.layers.begin(), image.layers.end(),
                                           [&](const OutputLayer& l) { return !l.full_float && beyond(l.values); });
@@ -82,7 +88,8 @@ bool exceeds_half(const OutputImage& image) {
 // True if all of the picture is below what a half stores with all its digits; much of it might be stored as 0.
 bool below_half(const OutputImage& image) {
   float most = 0;
-  for (const float v : image.rgb) most = std::max(most, std::abs(v));
+#pragma omp simd reduction(max : most)
+  for (size_t i = 0; i < image.rgb.size(); ++i) most = std::max(most, std::abs(image.rgb[i]));
   return most > 0 && most < kHalfMin;
 }
 

@@ -135,8 +135,9 @@ void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
       double sum[4] = {0, 0, 0, 0};
       film.each_in(columns[i], rows, [&](size_t unit) {
         const double* s = film.sums[unit].at(x, y);
+        if (!s) return;
         const double weight = film.weight(unit);
-        for (int c = 0; s && c < 4; ++c) sum[c] += weight * s[c];
+        for (int c = 0; c < 4; ++c) sum[c] += weight * s[c];
       });
       for (int c = 0; c < 3; ++c)
         out[c] = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
