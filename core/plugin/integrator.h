@@ -11,6 +11,9 @@ namespace whit {
 class Transport;
 struct Rays;
 
+/// How many lights are chosen for a point in the place of all, where the integrator says so (docs/speed.md says why).
+constexpr int kLightsOfTree = 16;
+
 class Integrator : public Plugin {
  public:
   static constexpr const char* kCategory = "integrator";
@@ -26,8 +29,10 @@ class Integrator : public Plugin {
   /// Whether rays after the camera's carry differentials, and whether all carry the density of their direction.
   virtual bool keeps_differentials() const { return true; }
   virtual bool keeps_densities() const { return false; }
-  /// How lights are chosen, if it has one chosen for each point.
+  /// How lights are chosen, if it has some chosen for each point,
   virtual std::optional<LightStrategy> light_strategy() const { return {}; }
+  /// and how many. Where the scene has no more than that, and that is more than one, all are sampled instead.
+  virtual int light_choices() const { return 1; }
 
   IntegerList bounds;  ///< "pixelbounds".
   /// The part of the picture that rendering is restricted to: x0, x1, y0, y1 in pixels; all by default.

@@ -43,11 +43,24 @@ struct Seen {
   const RGBLanes* environments = nullptr;  ///< The shares of the scene's lights at infinity; null unless asked for.
 };
 
+/// Two uniform numbers in [0,1) for every point.
+struct Uniform2 {
+  float *u = nullptr, *v = nullptr;
+};
+
 /// A sample of light for every point: of one light, or of one that was chosen for each point.
 struct DirectSamples : LightSamples {
   static constexpr int kNone = -1;
   int light = kNone;  ///< Number of the light; kNone when it is another for each point, or no light at all.
   const int32_t* lights = nullptr;  ///< Numbers by point, or null.
+};
+
+/// Lights that were chosen for each point: `of` arrays of n, one after the other.
+struct ChosenLights {
+  int of = 0;                       ///< How many for each point; the same light may be among them several times.
+  const int32_t* light = nullptr;   ///< Their numbers,
+  const float* expected = nullptr;  ///< and how often, on average, each of them is chosen for its point.
+  Uniform2 numbers;                 ///< For the points on them, by point: of the first, from which the others' follow.
 };
 
 /// What the lobes do with a direction.
@@ -82,11 +95,6 @@ inline float power_heuristic(float pdf, float other) {
   return 1 / (1 + ratio * ratio);
 }
 
-/// Two uniform numbers in [0,1) for every point.
-struct Uniform2 {
-  float *u = nullptr, *v = nullptr;
-};
-
 class Transport {
  public:
   virtual ~Transport() = default;
@@ -117,10 +125,12 @@ class Transport {
   virtual DirectSamples sample(const Points& points, int light, int number = 0, int of = 1, bool densities = false) = 0;
   /// How many samples of a light the scene wants.
   virtual int samples_of(int light) const = 0;
-  /// A sample of one light for each point, chosen by the number of `dimension`, sampled by those of the two after it. The
-  /// probability of the choice is part of the density, by which radiance is divided. Without points where nothing
-  /// scatters or shines.
-  virtual DirectSamples sample_one(const Points& points, int dimension) = 0;
+  /// Some lights for each point, chosen by the number of `dimension`, to be sampled by those of the two after it. None
+  /// where nothing scatters or shines, and none where the integrator is to sample all of them.
+  virtual ChosenLights choose_lights(const Points& points, int dimension) = 0;
+  /// A sample of the number-th of these for each point. The probability of the choice is part of the density, by which
+  /// radiance is divided.
+  virtual DirectSamples sample(const Points& points, const ChosenLights& chosen, int number) = 0;
   /// What the lobes send back along the rays of light from wi.
   virtual Scattered scatter(const Points& points, const Vec3Lanes& wi, bool densities = false,
                             LobeKinds kinds = LobeKinds::All) = 0;
@@ -157,7 +167,8 @@ class Transport {
 
   /// Arrays for values of the integrator's own.
   virtual Arena& arena() = 0;
-  /// Sample dimensions that sampling every light takes in one bounce. The integrator's own come after these.
+  /// Sample dimensions that sampling lights takes in one bounce, each of them or some that are chosen. The integrator's
+  /// own come after these.
   virtual int light_dimensions() const = 0;
   virtual const float* draw_1d(const Points& points, int dimension) = 0;
   virtual Uniform2 draw_2d(const Points& points, int dimension) = 0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/base/fastmath.h"
+#include "core/base/radical_inverse.h"
 #include "core/base/sampling.h"
 #include "core/batch/gather.h"
 #include "core/batch/sort.h"
@@ -50,7 +52,7 @@ DirectSamples Tracer::allocate_samples(const Points& points, bool densities) {
 
 /// How many samples of a light a point is sent, on average.
 float Tracer::expected_samples(int light, const Vec3f& p) const {
-  if (scene_.light_choice) return scene_.light_choice->probability(light, p);
+  if (scene_.light_choice) return scene_.light_choice->probability(light, p) * static_cast<float>(scene_.chosen_lights);
   return static_cast<float>(scene_.lights[static_cast<size_t>(light)].samples);
 }
 
@@ -88,57 +90,87 @@ DirectSamples Tracer::sample(const Points& points, int light_number, int number,
 
 namespace {
 
-/// The samples of some lanes of a batch, with arrays of their own for what one light writes.
-LightSamples gathered_samples(const DirectSamples& s, const int32_t* lanes, int n, const SceneLight& light,
-                              Arena& arena) {
-  LightSamples part;
-  const Vec3Lanes p = arena.vec3(n);
-  float *u = arena.floats(n), *v = arena.floats(n);
-  gather(lanes, n, s.p, p);
-  gather(lanes, n, s.u, u);
-  gather(lanes, n, s.v, v);
-  part.n = n, part.arena = &arena, part.p = p, part.u = u, part.v = v;
-  part.wi = arena.vec3(n), part.distance = arena.floats(n), part.radiance = arena.rgb(n);
-  if (gives_points(light)) part.q = arena.vec3(n);
-  if (light.dimension >= 0) part.pdf = arena.floats(n);
-  return part;
+/// The samples of one run of the lanes of a batch, of which the numbers are in, and the arrays begin at the run.
+LightSamples run_of(const LightSamples& s, int first, int n, const SceneLight& light) {
+  LightSamples run = s;
+  run.n = n;
+  run.p = s.p.from(first), run.u = s.u + first, run.v = s.v + first;
+  run.wi = s.wi.from(first), run.distance = s.distance + first, run.radiance = s.radiance.from(first);
+  run.q = gives_points(light) ? s.q.from(first) : Vec3Lanes{};
+  run.pdf = light.dimension >= 0 ? s.pdf + first : nullptr;
+  return run;
+}
+
+/// Samples of the lights of a batch's points, one light after another: `order` has the points by light.
+void sample_runs(const Scene& scene, const int32_t* light, const int32_t* order, const LightSamples& s) {
+  for (int first = 0, last; first < s.n; first = last) {
+    const int number = light[order[first]];
+    for (last = first + 1; last < s.n && light[order[last]] == number;) ++last;
+    const SceneLight& from = scene.lights[static_cast<size_t>(number)];
+    const LightSamples run = run_of(s, first, last - first, from);
+    from.light->sample(run);
+    // No direction that is sampled otherwise meets a delta light.
+    if (!run.pdf) std::fill(s.pdf + first, s.pdf + last, std::numeric_limits<float>::infinity());
+    if (!s.q || run.q) continue;
+    for (int i = first; i < last; ++i) s.q.set(i, s.p[i] + s.wi[i] * s.distance[i]);
+  }
 }
 
 }  // namespace
 
-DirectSamples Tracer::sample_one(const Points& points, int dimension) {
+ChosenLights Tracer::choose_lights(const Points& points, int dimension) {
+  const int n = points.n, of = scene_.chosen_lights;
+  if (!scene_.light_choice || !points.notes->scatters) return {};
+  const float* const number = draw_1d(points, dimension);
+  const Uniform2 on_light = draw_2d(points, dimension + 1);
+  int32_t* const light = arena_.alloc<int32_t>(n * of);
+  float* const expected = arena_.floats(n * of);
+  const ArenaScope scratch(arena_);
+  float* const u = arena_.floats(n);
+  const float share = 1 / static_cast<float>(of);
+  for (int k = 0; k < of; ++k) {
+    // One number in each of as many equal parts: what has more than a part of the choice is never left out.
+    const auto part = static_cast<float>(k);
+    for_lanes(n, [=](int i) { u[i] = min_of((part + number[i]) * share, kBelowOne); });
+    scene_.light_choice->choose(n, points.at.p, u, light + k * n, expected + k * n);
+  }
+  const auto count = static_cast<float>(of);
+  for_lanes(n * of, [=](int i) { expected[i] *= count; });
+  return {of, light, expected, on_light};
+}
+
+DirectSamples Tracer::sample(const Points& points, const ChosenLights& chosen, int number) {
   const int n = points.n;
-  if (scene_.lights.empty() || !points.notes->scatters) return {};
+  const int32_t* const light = chosen.light + number * n;
+  const float* const expected = chosen.expected + number * n;
   DirectSamples s = allocate_samples(points, true);
-  const float* const choice = draw_1d(points, dimension);
-  const Uniform2 numbers = draw_2d(points, dimension + 1);
-  s.u = numbers.u, s.v = numbers.v;
-  if (scene_.any_touched) s.q = arena_.vec3(n);
-  int32_t *light = arena_.alloc<int32_t>(n), *order = arena_.alloc<int32_t>(n);
-  float* const probability = arena_.floats(n);
-  scene_.light_choice->choose(n, s.p, choice, light, probability);
   s.lights = light;
+  if (scene_.any_touched) s.q = arena_.vec3(n);
+  const ArenaScope scratch(arena_);
+  int32_t* const order = arena_.alloc<int32_t>(n);
   for (int i = 0; i < n; ++i) order[i] = i;
   if (scene_.lights.size() > 1) sort_lanes(light, n, order, arena_);
-  const ArenaScope scratch(arena_);
-  for (int first = 0, last; first < n; first = last) {
-    const int number = light[order[first]];
-    for (last = first + 1; last < n && light[order[last]] == number;) ++last;
-    const SceneLight& from = scene_.lights[static_cast<size_t>(number)];
-    const int32_t* const lanes = order + first;
-    const int count = last - first;
-    const LightSamples part = gathered_samples(s, lanes, count, from, arena_);
-    from.light->sample(part);
-    for (int i = 0; i < count; ++i) {
-      const int to = lanes[i];
-      const float chosen = probability[to];
-      s.wi.set(to, part.wi[i]);
-      s.distance[to] = part.distance[i];
-      s.radiance.set(to, part.radiance[i] * (1 / chosen));
-      // No direction that is sampled otherwise meets a delta light.
-      s.pdf[to] = part.pdf ? chosen * part.pdf[i] : std::numeric_limits<float>::infinity();
-      if (s.q) s.q.set(to, part.q ? part.q[i] : s.p[to] + part.wi[i] * part.distance[i]);
-    }
+  LightSamples sorted;
+  sorted.n = n, sorted.arena = &arena_;
+  const Vec3Lanes p = arena_.vec3(n);
+  float *const u = arena_.floats(n), *const v = arena_.floats(n);
+  for_lanes(n, [&](int i) {
+    const int from = order[i];
+    const Vec2f at = lattice_point({chosen.numbers.u[from], chosen.numbers.v[from]}, number);
+    p.set(i, points.at.p[from]), u[i] = at.x, v[i] = at.y;
+  });
+  sorted.p = p, sorted.u = u, sorted.v = v;
+  sorted.wi = arena_.vec3(n), sorted.distance = arena_.floats(n), sorted.radiance = arena_.rgb(n);
+  sorted.pdf = arena_.floats(n);
+  if (s.q) sorted.q = arena_.vec3(n);
+  sample_runs(scene_, light, order, sorted);
+  for (int i = 0; i < n; ++i) {
+    const int to = order[i];
+    s.wi.set(to, sorted.wi[i]);
+    s.distance[to] = sorted.distance[i];
+    s.radiance.set(to, sorted.radiance[i] * (1 / expected[to]));
+    s.pdf[to] = expected[to] * sorted.pdf[i];
+    if (s.q) s.q.set(to, sorted.q[i]);
   }
   return s;
 }

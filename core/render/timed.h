@@ -41,8 +41,11 @@ class TimedTransport final : public TransportWrapper {
   DirectSamples sample(const Points& points, int light, int number, int of, bool densities) override {
     return in(Stage::LightSampling, [&] { return inner_.sample(points, light, number, of, densities); });
   }
-  DirectSamples sample_one(const Points& points, int dimension) override {
-    return in(Stage::LightSampling, [&] { return inner_.sample_one(points, dimension); });
+  ChosenLights choose_lights(const Points& points, int dimension) override {
+    return in(Stage::LightSampling, [&] { return inner_.choose_lights(points, dimension); });
+  }
+  DirectSamples sample(const Points& points, const ChosenLights& chosen, int number) override {
+    return in(Stage::LightSampling, [&] { return inner_.sample(points, chosen, number); });
   }
   Scattered scatter(const Points& points, const Vec3Lanes& wi, bool densities, LobeKinds kinds) override {
     return in(Stage::Lobes, [&] { return inner_.scatter(points, wi, densities, kinds); });

@@ -35,7 +35,8 @@ class Tracer final : public Transport {
   int next_light(const Points& points, int light) override;
   DirectSamples sample(const Points& points, int light, int number, int of, bool densities) override;
   int samples_of(int light) const override { return scene_.lights[static_cast<size_t>(light)].samples; }
-  DirectSamples sample_one(const Points& points, int dimension) override;
+  ChosenLights choose_lights(const Points& points, int dimension) override;
+  DirectSamples sample(const Points& points, const ChosenLights& chosen, int number) override;
   Scattered scatter(const Points& points, const Vec3Lanes& wi, bool densities, LobeKinds kinds) override;
   RGBLanes visible(const Points& points, const DirectSamples& samples, const RGBLanes& light) override;
 

@@ -21,8 +21,11 @@ class TransportWrapper : public Transport {
   DirectSamples sample(const Points& points, int light, int number, int of, bool densities) override {
     return inner_.sample(points, light, number, of, densities);
   }
-  DirectSamples sample_one(const Points& points, int dimension) override {
-    return inner_.sample_one(points, dimension);
+  ChosenLights choose_lights(const Points& points, int dimension) override {
+    return inner_.choose_lights(points, dimension);
+  }
+  DirectSamples sample(const Points& points, const ChosenLights& chosen, int number) override {
+    return inner_.sample(points, chosen, number);
   }
   Scattered scatter(const Points& points, const Vec3Lanes& wi, bool densities, LobeKinds kinds) override {
     return inner_.scatter(points, wi, densities, kinds);

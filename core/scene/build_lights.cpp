@@ -45,6 +45,18 @@ void add_emitters(Scene& scene, const LitShape& lit) {
   }
 }
 
+/// Where the integrator wants some lights chosen for each point, what chooses them: unless it can have them all for that.
+void choose_some(const BuildContext& context, Scene& scene) {
+  const std::optional<LightStrategy> strategy = scene.integrator().light_strategy();
+  const int wanted = scene.integrator().light_choices();
+  if (!strategy || scene.lights.empty()) return;
+  if (wanted > 1 && scene.lights.size() <= static_cast<size_t>(wanted)) return;
+  scene.light_choice = make_light_choice(scene.lights, *strategy, context.scene_radius);
+  scene.chosen_lights = wanted;
+  // Which ones, and a point of each.
+  scene.light_dimensions = 3;
+}
+
 }  // namespace
 
 std::optional<Emission> emission_of(const BuildContext& context, const ShapeDescription& description, bool is_curve,
@@ -74,9 +86,7 @@ void build_lights(const BuildContext& context, std::span<const LitShape> lit, Sc
     if (light.plugin->is_environment()) scene.environments.push_back({light.plugin.get(), number});
   }
   for (const LitShape& shape : lit) add_emitters(scene, shape);
-  const std::optional<LightStrategy> strategy = scene.integrator().light_strategy();
-  if (strategy && !scene.lights.empty())
-    scene.light_choice = make_light_choice(scene.lights, *strategy, context.scene_radius);
+  choose_some(context, scene);
 }
 
 bool find_light_ends(const BuildContext& context, std::vector<SceneLight>& lights) {

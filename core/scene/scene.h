@@ -132,7 +132,7 @@ struct Scene {
   std::vector<Mat4d> camera_keys;              ///< Camera to render space at evenly spaced times.
   double time_start = 0, time_end = 1;         ///< Times of the first and last key.
   bool any_touched = false;                    ///< Whether the end of some light is (RayEnd::touched).
-  int light_dimensions = 0;                    ///< Sample dimensions that the lights of one bounce use.
+  int light_dimensions = 0;                    ///< Sample dimensions that sampling lights uses in one bounce.
   int samples_per_pixel = 1;
   /// Camera rays' footprints are a pixel's, shrunk by the square root of this (in area by this). The number of samples
   /// that the scene asks for, whatever is rendered: pictures of any number of samples converge to the same.
@@ -140,6 +140,7 @@ struct Scene {
   int sort_keys = 0;           ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
   bool has_instances = false;  ///< Points are taken to render space.
   std::unique_ptr<LightChoice> light_choice;  ///< Null where the integrator samples every light.
+  int chosen_lights = 0;                      ///< How many of them it chooses for each point, with replacement.
   std::unique_ptr<Accel> accel;
   BuildTimes build_times;
 

@@ -13,14 +13,17 @@
 namespace whit {
 namespace {
 
-/// A number that goes into a parameter of the integrator.
+/// What goes into a parameter of the integrator: a number, or a word that is not empty.
 struct Knob {
   const char *flag, *parameter;
-  std::optional<double> value;
+  std::optional<double> number;
+  std::string word{};
 };
 
 std::vector<Knob> knobs_of(const Overrides& o) {
-  return {{"--maxdepth", "maxdepth", o.max_depth}, {"--rrthreshold", "rrthreshold", o.rr_threshold}};
+  return {{"--maxdepth", "maxdepth", o.max_depth},
+          {"--rrthreshold", "rrthreshold", o.rr_threshold},
+          {"--lights", "strategy", {}, o.lights}};
 }
 
 /// "" or that a flag's value is none of the names there are.
@@ -112,7 +115,7 @@ void use_integrator(SceneDescription& world, const std::string& name) {
   if (find_plugin("integrator", world.integrator.plugin) != &wanted) use_plugin(world.integrator, wanted);
 }
 
-/// "" or why the integrator in force does not take a number.
+/// "" or why the integrator in force does not take a value.
 std::string turn(SceneDescription& world, const Knob& knob) {
   const PluginInfo& integrator = integrator_in_force(world);
   const ParamSpec* spec = integrator.find_param(knob.parameter);
@@ -123,12 +126,13 @@ std::string turn(SceneDescription& world, const Knob& knob) {
     return fmt::format("{}: integrator \"{}\" has no parameter \"{}\"; {} {}", knob.flag, integrator.name,
                        knob.parameter, fmt::join(others, ", "), others.size() == 1 ? "has" : "have");
   }
-  if (!(*knob.value >= spec->range.min && *knob.value <= spec->range.max))
-    return fmt::format("{}: {} must be {}, not {}", knob.flag, knob.parameter, range_text(spec->range), *knob.value);
+  if (knob.number && !(*knob.number >= spec->range.min && *knob.number <= spec->range.max))
+    return fmt::format("{}: {} must be {}, not {}", knob.flag, knob.parameter, range_text(spec->range), *knob.number);
   Entity& statement = world.integrator;
   // A statement that is not in the file is that of the default.
   if (statement.plugin.empty() && !statement.where.known()) statement.plugin = integrator.name;
-  set_number(statement, *spec, *knob.value);
+  if (knob.number) set_number(statement, *spec, *knob.number);
+  else set_parameter(statement, spec->name, ParamType::String, knob.word);
   return {};
 }
 
@@ -150,6 +154,9 @@ std::string usage_problem(const Overrides& o) {
   const std::vector<std::string>& filters = filters_of(find_plugin("spectrum texture", "imagemap"));
   if (problem.empty() && !o.texture_filter.empty() && !has(filters, o.texture_filter))
     problem = unknown_name("--texture-filter", "filter", o.texture_filter, filters);
+  const std::vector<std::string>& strategies = find_plugin("integrator", "whitted")->find_param("strategy")->choices;
+  if (problem.empty() && !o.lights.empty() && !has(strategies, o.lights))
+    problem = unknown_name("--lights", "strategy", o.lights, strategies);
   return problem;
 }
 
@@ -158,7 +165,7 @@ std::string override_world(SceneDescription& world, const Overrides& o) {
   if (!o.sampler.empty()) use_sampler(world, o.sampler);
   if (!o.texture_filter.empty()) filter_textures(world, o.texture_filter);
   for (const Knob& knob : knobs_of(o)) {
-    if (!knob.value) continue;
+    if (!knob.number && knob.word.empty()) continue;
     if (std::string problem = turn(world, knob); !problem.empty()) return problem;
   }
   return {};

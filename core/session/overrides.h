@@ -15,6 +15,7 @@ struct Overrides {
   std::string sampler;                 ///< --sampler NAME
   std::optional<int> max_depth;        ///< --maxdepth N, of the integrator in force.
   std::optional<double> rr_threshold;  ///< --rrthreshold X, of the integrator in force.
+  std::string lights;                  ///< --lights all|tree, of the integrator in force.
   std::string texture_filter;          ///< --texture-filter ewa|trilinear|point, of all image textures.
 };
 

@@ -16,14 +16,16 @@ struct DirectLighting final : Integrator {
   int maxdepth = 5;
   Choice strategy;
 
-  bool samples_all() const { return strategy.index == 0; }
+  enum Strategy : int { kAll, kOne, kTree };
+  bool samples_all() const { return strategy.index == kAll; }
   int max_depth() const override { return std::max(maxdepth, 1); }
   std::optional<LightStrategy> light_strategy() const override {
-    return samples_all() ? std::nullopt : std::optional(LightStrategy::Uniform);
+    return samples_all() ? std::nullopt : std::optional(LightStrategy::Spatial);
   }
+  int light_choices() const override { return strategy.index == kTree ? kLightsOfTree : 1; }
 
-  /// After those of the lights: one light and a point of it, a lobe and a direction of it, and a choice between several
-  /// mirrors or smooth boundaries.
+  /// After those of the lights: three that are free, a lobe and a direction of it, and a choice between several mirrors
+  /// or smooth boundaries.
   enum Dimension : int { kLight = 0, kLobe = 3, kMirror = 6, kBoundary = 7, kDimensions = 8 };
   int dimensions(int lights) const override { return lights + kDimensions; }
 
@@ -34,25 +36,29 @@ struct DirectLighting final : Integrator {
     t.shade(points);
     t.add(points, t.emitted(points));
     const int own = t.light_dimensions();
-    if (samples_all()) {
-      for (const int light : lights(t, points)) {
-        const int of = t.samples_of(light);
-        for (int k = 0; k < of; ++k) {
-          const ArenaScope scratch(t.arena());
-          add_sampled(points, t.sample(points, light, k, of, true), t);
-        }
-      }
-    } else {
-      add_sampled(points, t.sample_one(points, own + kLight), t);
+    const ChosenLights chosen = t.choose_lights(points, kLight);
+    for (int k = 0; k < chosen.of; ++k) {
+      const ArenaScope scratch(t.arena());
+      add_sampled(points, t.sample(points, chosen, k), t);
     }
+    if (chosen.of == 0) add_all(points, t);
     if (t.live(Effect::AreaLights) || t.live(Effect::EnvironmentLights)) add_met(points, own + kLobe, t);
     if (rays.depth + 1 >= maxdepth) return;
     t.send(points, t.mirrored(points, own + kMirror), t.refracted(points, own + kBoundary));
   }
 
+  static void add_all(const Points& points, Transport& t) {
+    for (const int light : lights(t, points)) {
+      const int of = t.samples_of(light);
+      for (int k = 0; k < of; ++k) {
+        const ArenaScope scratch(t.arena());
+        add_sampled(points, t.sample(points, light, k, of, true), t);
+      }
+    }
+  }
+
   /// The light of samples, as far as no sampled direction finds it.
   static void add_sampled(const Points& points, const DirectSamples& light, Transport& t) {
-    if (light.n == 0) return;
     const bool found_otherwise = light.pdf != nullptr;
     const Scattered s = t.scatter(points, light.wi, found_otherwise, LobeKinds::NonSpecular);
     t.add(points, light, t.visible(points, light, arriving(light, s)));
@@ -72,8 +78,10 @@ const Register<DirectLighting> direct_lighting{
     "directlighting", "Direct light by samples of lights and lobes together, perfect mirrors and refraction.",
     param(&DirectLighting::maxdepth, "maxdepth", 5, Unit::None,
           "Rounds of rays: 1 or less shows direct light only, each further one a specular bounce.", {kAny.min, 1e6}),
-    choice(&DirectLighting::strategy, "strategy", {"all", "one"},
-           "Samples every light as often as its \"samples\" say, or one light for each point."),
+    choice(
+        &DirectLighting::strategy, "strategy", {"all", "one", "tree"},
+        "Samples every light as often as its \"samples\" say, or one or a few lights for each point, which a tree of "
+        "the lights chooses by what may arrive."),
     pixelbounds_param()};
 
 }  // namespace

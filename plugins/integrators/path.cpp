@@ -41,7 +41,9 @@ struct Path final : Integrator {
     t.shade(points);
     // Without indirect light no sampled direction finds a light that is sampled here.
     const bool indirect = t.live(Effect::Indirect);
-    if (const DirectSamples light = t.sample_one(points, kLight); light.n > 0) {
+    const ChosenLights chosen = t.choose_lights(points, kLight);
+    for (int k = 0; k < chosen.of; ++k) {
+      const DirectSamples light = t.sample(points, chosen, k);
       const Scattered scattered = t.scatter(points, light.wi, indirect);
       t.add(points, light, t.visible(points, light, arriving(light, scattered)));
     }

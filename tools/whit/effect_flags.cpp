@@ -12,6 +12,8 @@ void add_effect_flags(CommandLine& command, EffectFlags& flags) {
       {"--sampler", &o.sampler, "Instead of the scene's, with as many samples ('whit help sampler')"});
   command.flags.push_back({"--maxdepth", &o.max_depth, "The integrator's maxdepth, instead of the scene's"});
   command.flags.push_back({"--rrthreshold", &o.rr_threshold, "The integrator's rrthreshold, instead of the scene's"});
+  command.flags.push_back(
+      {"--lights", &o.lights, "At each point 'all' lights are sampled, or some that a 'tree' of them chooses"});
   command.flags.push_back({"--texture-filter", &o.texture_filter, "Of all image textures: ewa, trilinear or point"});
   command.flags.push_back(
       {"--without", &flags.without, "Effects to leave out, as in reflection,shadows ('whit help effects')"});

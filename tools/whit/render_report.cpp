@@ -48,8 +48,9 @@ void more_statistics(const RenderOutcome& outcome) {
   say(fmt::format("ready to trace after {} ({} of processor time){}; {} resident after parsing.",
                   duration_text(times.ready.wall), duration_text(times.ready.cpu), parts,
                   bytes_text(outcome.parsed_memory)));
-  say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} lights sampled per point.", accel_version(),
+  say(fmt::format("{}: geometry {}, {} shapes, {} instances, {} of {} lights sampled per point.", accel_version(),
                   bytes_text(static_cast<double>(scene.geometry_bytes())), scene.shapes.size(), scene.instances.size(),
+                  scene.chosen_lights > 0 ? static_cast<size_t>(scene.chosen_lights) : scene.lights.size(),
                   scene.lights.size()));
   say(fmt::format("{} surface points, {} footprints, {} interface crossings.", count_text(s.surface_points),
                   count_text(s.footprints), count_text(s.passing_rays)));
@@ -59,6 +60,19 @@ void more_statistics(const RenderOutcome& outcome) {
                   count_text(s.lights_skipped)));
   say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
                   t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
+}
+
+/// Where there are many, that each was sampled, or how few were; integrators that always choose say nothing.
+void say_lights(const Scene& scene) {
+  constexpr size_t kMany = 100;
+  const std::string all = count_text(static_cast<double>(scene.lights.size()));
+  if (scene.chosen_lights > 1)
+    say(fmt::format("{} of {} lights sampled at each point, as a tree of them chose (--lights tree).",
+                    scene.chosen_lights, all));
+  else if (scene.chosen_lights == 0 && scene.lights.size() >= kMany)
+    say(fmt::format(
+        "{} lights, each sampled at every point that it may reach; '--lights tree' samples {} (noisier, much faster).",
+        all, kLightsOfTree));
 }
 
 }  // namespace
@@ -108,6 +122,7 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
                   rounding.empty() ? "" : " (" + rounding + ")",
                   count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
                   s.invalid_samples));
+  say_lights(scene);
   if (const size_t n = unread_files; n > 0)
     say(fmt::format("{} file{} of objects that are never placed {} not read (whit explain lists {}).", n,
                     n == 1 ? "" : "s", n == 1 ? "was" : "were", n == 1 ? "it" : "them"));

@@ -71,6 +71,8 @@ Json settings_of(const RenderSettings& asked, const std::string& path, const Ren
                       {"threads", outcome.result.threads},
                       {"integrator", integrator.name},
                       {"integrator_parameters", parameters(world.integrator, integrator)},
+                      {"lights", static_cast<int64_t>(scene.lights.size())},
+                      {"lights_chosen", scene.chosen_lights > 0 ? Json(scene.chosen_lights) : Json()},
                       {"sampler", sampler.name},
                       {"sampler_parameters", parameters(world.sampler, sampler)},
                       {"resolution", Json::Array{picture.resolution.x, picture.resolution.y}},
