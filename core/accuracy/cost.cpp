@@ -192,7 +192,7 @@ class Study {
   }
 
   void compare() {
-    std::vector<CostAlternative> all = knobs_of(*world_.description, world_.scene().plan, request_.all_samplers);
+    std::vector<CostAlternative> all = knobs_of(*world_.description, world_.scene(), request_.all_samplers);
     const std::vector<CostAlternative> effects = effects_of(world_.scene().plan);
     all.insert(all.end(), effects.begin(), effects.end());
     CostComparisons found = compare_all(world_, all, levels_, *judge_, crop_, file_, number_, request_, clock_);

@@ -57,7 +57,7 @@ struct CostChange {
 
 /// One way to render the scene, measured.
 struct CostSetting {
-  std::string knob;     ///< "samples", "sampler", "maxdepth", "texture filter", "traversal", "integrator", "roulette".
+  std::string knob;     ///< "samples", "lights", "sampler", "maxdepth", "texture filter", "traversal", "integrator" ...
   std::string value;    ///< "64", "random": of the knob.
   int samples = 0;      ///< Per pixel.
   std::string command;  ///< To paste: without --outfile and --seed.

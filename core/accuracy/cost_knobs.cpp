@@ -95,6 +95,17 @@ void add_integrators(const SceneDescription& world, std::vector<CostAlternative>
     add(to, "integrator", own, name, "--integrator").variant.overrides.integrator = name;
 }
 
+/// Of many lights, all or some; of few, both are the same.
+void add_lights(const SceneDescription& world, const Scene& scene, std::vector<CostAlternative>& to) {
+  const PluginInfo& integrator = integrator_in_force(world);
+  if (scene.lights.size() <= static_cast<size_t>(kLightsOfTree) || !integrator.find_param("strategy")) return;
+  const bool some = scene.chosen_lights > 0;
+  const char *const own = some ? (scene.chosen_lights > 1 ? "tree" : "one") : "all", *const other =
+                                                                                         some ? "all" : "tree";
+  CostAlternative& added = add(to, "lights", own, other, "--lights");
+  added.variant.overrides.lights = other, added.same_limit = true;
+}
+
 /// Roulette begins at the fifth bounce.
 void add_roulette(const SceneDescription& world, const EffectPlan& plan, std::vector<CostAlternative>& to) {
   const PluginInfo& integrator = integrator_in_force(world);
@@ -111,8 +122,10 @@ void add_roulette(const SceneDescription& world, const EffectPlan& plan, std::ve
 
 }  // namespace
 
-std::vector<CostAlternative> knobs_of(const SceneDescription& world, const EffectPlan& plan, bool all_samplers) {
+std::vector<CostAlternative> knobs_of(const SceneDescription& world, const Scene& scene, bool all_samplers) {
+  const EffectPlan& plan = scene.plan;
   std::vector<CostAlternative> out;
+  add_lights(world, scene, out);
   add_samplers(world, all_samplers, out);
   add_depths(world, plan, out);
   add_texture_filters(world, plan, out);

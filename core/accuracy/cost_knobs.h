@@ -1,4 +1,4 @@
-// What there is to turn at a scene: the settings of the knobs that its plan makes meaningful, and the effects to leave out.
+// What there is to turn at a scene: the settings of the knobs that are meaningful there, and the effects to leave out.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct CostAlternative {
 };
 
 /// The most telling ones first.
-std::vector<CostAlternative> knobs_of(const SceneDescription& world, const EffectPlan& plan, bool all_samplers);
+std::vector<CostAlternative> knobs_of(const SceneDescription& world, const Scene& scene, bool all_samplers);
 
 /// Each effect that the picture shows, left out.
 std::vector<CostAlternative> effects_of(const EffectPlan& plan);
