@@ -351,7 +351,7 @@ void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
 
 void Accel::record(RayRecord* record) { impl_->record = record; }
 
-bool Accel::is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) const {
+Touching Accel::touching(const Box3d& box, const std::array<Vec3d, 3>* corners) const {
   const Impl::Group& world = impl_->groups[kWorld];
   const UserOf user_of = [&](unsigned instance, unsigned geometry) {
     RTCScene scene = world.scene;
@@ -363,13 +363,13 @@ bool Accel::is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) co
   };
   const Box3d room(box.min - Vec3d(kNearEnd), box.max + Vec3d(kNearEnd));
   for (const Box3d& swept : impl_->swept) {
-    if (swept.intersects(room)) return true;
+    if (swept.intersects(room)) return {true, {}, INFINITY};
   }
   const UserOf analytic_of = [&](unsigned, unsigned geometry) {
     return static_cast<const GeometryUser*>(rtcGetGeometryUserData(rtcGetGeometry(impl_->analytic->scene(), geometry)));
   };
-  return is_anything_near(world.scene, user_of, box, corners) ||
-         is_anything_near(impl_->analytic->scene(), analytic_of, box, corners);
+  const Touching analytic = what_is_near(impl_->analytic->scene(), analytic_of, box, corners);
+  return analytic.any ? analytic : what_is_near(world.scene, user_of, box, corners);
 }
 
 bool Accel::has_instances() const { return !impl_->instance_group.empty(); }

@@ -95,9 +95,9 @@ class Accel {
   /// Writes 1 where something is hit before t_max, else 0.
   void occluded(const RayLanes& rays, uint8_t* blocked) const;
 
-  /// Whether anything is so near to an emitter that shadow rays to it need RayEnd::touched: a triangle of render space,
-  /// or whatever is in a box. `corners` is null for a box.
-  bool is_touched(const Box3d& box, const std::array<Vec3d, 3>* corners) const;
+  /// What is so near to an emitter that shadow rays must tell it from that: from a triangle of render space, or whatever
+  /// is in a box. `corners` is null for a box.
+  Touching touching(const Box3d& box, const std::array<Vec3d, 3>* corners) const;
 
   /// Keeps every ray that is traced from now on (one thread only); null ends it. For core/accel/replay.h.
   void record(RayRecord* record);

@@ -14,9 +14,10 @@ struct NearEmitter {
   RTCScene world;
   const Box3d& box;
   const std::array<Vec3d, 3>* corners;
-  bool found = false;
+  Touching found{};
 
-  bool is_near(const EndTriangle& t) const;
+  void look_at(const EndTriangle& t, bool in_world_floats);
+  bool is_near(const EndTriangle& t, double margin) const;
   static bool visit(RTCPointQueryFunctionArguments* args);
 };
 
@@ -31,12 +32,29 @@ std::pair<double, double> distances(const EndTriangle& t, const Points& points) 
 
 double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-bool NearEmitter::is_near(const EndTriangle& t) const {
-  const std::array<Vec3d, 3> own{t.a, t.b, t.c};
-  Box3d around;
-  for (const Vec3d& p : own) around.extendBy(p);
+Box3d box_around(const EndTriangle& t) {
+  Box3d box;
+  for (const Vec3d& p : {t.a, t.b, t.c}) box.extendBy(p);
+  return box;
+}
+
+/// Notes a triangle that is near. What floats in render space get wrong is known; an instance's space has other lengths,
+/// and huge triangles are what they are for being beyond floats.
+void NearEmitter::look_at(const EndTriangle& t, bool in_world_floats) {
+  // More are not looked at for every ray.
+  constexpr size_t kMost = 32;
   // The larger the triangle, the farther off Embree's plane is.
-  const double margin = kNearEnd * std::max(1.0, around.size().length() / 128);
+  const double margin = kNearEnd * std::max(1.0, box_around(t).size().length() / 128);
+  if (!is_near(t, margin)) return;
+  found.any = true;
+  found.normals.emplace_back((t.b - t.a).cross(t.c - t.a).normalized());
+  found.off = std::max(found.off, static_cast<float>(margin));
+  if (!in_world_floats || found.normals.size() > kMost) found.off = INFINITY;
+}
+
+bool NearEmitter::is_near(const EndTriangle& t, double margin) const {
+  const std::array<Vec3d, 3> own{t.a, t.b, t.c};
+  const Box3d around = box_around(t);
   if (!Box3d(around.min - Vec3d(margin), around.max + Vec3d(margin)).intersects(box)) return false;
   const auto apart = [&](const std::pair<double, double>& d) { return d.first > margin || d.second < -margin; };
   if (!corners) return !apart(distances(t, corners_of(box)));
@@ -50,7 +68,8 @@ bool NearEmitter::is_near(const EndTriangle& t) const {
 
 bool NearEmitter::visit(RTCPointQueryFunctionArguments* args) {
   auto& self = *static_cast<NearEmitter*>(args->userPtr);
-  if (self.found) return false;
+  // There is nothing more to know.
+  if (self.found.off == INFINITY) return false;
   const bool instanced = args->context->instStackSize > 0;
   const unsigned instance = instanced ? args->context->instID[0] : RTC_INVALID_GEOMETRY_ID;
   const GeometryUser* user = self.user_of(instance, args->geomID);
@@ -59,28 +78,30 @@ bool NearEmitter::visit(RTCPointQueryFunctionArguments* args) {
   if (instanced) placed = instance_to_render(self.world, instance, args->query->time);
   const Mat4d* to_render = instanced ? &placed : nullptr;
   if (user->triangles) {
-    self.found = self.is_near(end_triangle(user->triangles[args->primID], to_render));
+    self.look_at(end_triangle(user->triangles[args->primID], to_render), false);
   } else if (user->mesh.indices) {
-    self.found = self.is_near(end_triangle(user->mesh, args->primID, to_render));
+    self.look_at(end_triangle(user->mesh, args->primID, to_render), !instanced);
   } else if (user->analytic && self.corners) {
     // Rays to a triangle stop in front of it, unless it is touched.
     Box3d box = transform_box(user->analytic->object_to_scene(), user->analytic->object_bounds());
     if (instanced) box = transform_box(placed, box);
-    self.found = Box3d(box.min - Vec3d(kNearEnd), box.max + Vec3d(kNearEnd)).intersects(self.box);
+    if (Box3d(box.min - Vec3d(kNearEnd), box.max + Vec3d(kNearEnd)).intersects(self.box))
+      self.found.any = true, self.found.off = INFINITY;
   }
   return false;
 }
 
 }  // namespace
 
-bool is_anything_near(RTCScene world, const UserOf& user_of, const Box3d& box, const std::array<Vec3d, 3>* corners) {
+Touching what_is_near(RTCScene world, const UserOf& user_of, const Box3d& box, const std::array<Vec3d, 3>* corners) {
   NearEmitter near{user_of, world, box, corners};
   const Vec3f middle(box.center());
   RTCPointQuery query{middle.x, middle.y, middle.z, 0, static_cast<float>(box.size().length() / 2 + 20 * kNearEnd)};
   RTCPointQueryContext context;
   rtcInitPointQueryContext(&context);
   rtcPointQuery(world, &query, &context, NearEmitter::visit, &near);
-  return near.found;
+  if (near.found.off == INFINITY) near.found.normals.clear();
+  return std::move(near.found);
 }
 
 }  // namespace whit

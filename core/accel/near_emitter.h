@@ -1,4 +1,4 @@
-// What is so near to an emitter that shadow rays to it need RayEnd::touched.
+// What is so near to an emitter that shadow rays must tell it from the emitter.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace whit {
 /// What stands behind a geometry of an instance (RTC_INVALID_GEOMETRY_ID: of the world itself).
 using UserOf = std::function<const GeometryUser*(unsigned instance, unsigned geometry)>;
 
-/// As Accel::is_touched(), of what does not move.
-bool is_anything_near(RTCScene world, const UserOf& user_of, const Box3d& box, const std::array<Vec3d, 3>* corners);
+/// As Accel::touching(), of what does not move.
+Touching what_is_near(RTCScene world, const UserOf& user_of, const Box3d& box, const std::array<Vec3d, 3>* corners);
 
 }  // namespace whit

@@ -10,13 +10,17 @@
 // Embree's floats are not as exact. Its triangle test (Pluecker coordinates relative to the origin) forms the volume
 // n . (v - o) from some ten roundings of terms no larger than |n| |v - o|, so its plane is off by about 10 u |v - o|, where
 // u = 2^-24: in render space, whose radius is at most 128, by 1e-4, ten times more than the vertices are. Lights that have
-// a triangle that near are `touched`: their rays go on to twice the distance, so that no triangle before the end is
-// missed because of its rounded distance, and what they meet is decided in double precision. (A ray's origin at least as
-// far from the triangle's plane as the plane is uncertain gets a distance that is at most twice too long.) All other
-// lights trace rays as they are. Analytic shapes are double precision anyway.
+// a triangle that near are `touched`: their rays go on beyond the end, so that no triangle before it is missed because of
+// its rounded distance, and what they meet is decided in double precision. A plane that is off by e is met by a ray at
+// the angle a to it up to e / sin a too far away; the triangles that touch are few, so rays go on by that of the one
+// that they graze most. (To twice the distance is enough in any case: a ray's origin is at least as far from the
+// triangle's plane as the plane is uncertain.) It matters: in front of a lamp that is a mesh, whose triangles all touch
+// their neighbours, rays to twice the distance meet the lamp's far side and what is behind it. All other lights trace
+// rays as they are. Analytic shapes are double precision anyway.
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/plugin/shape.h"
 
@@ -34,16 +38,26 @@ Vec3d rounding_of(const Vec3d& v);
 /// counts. By the shape's own box, for one around a turned shape is larger.
 double rounding_of_size(const Box3d& object_box, const Mat4d& to_render);
 
+/// Triangles that are so near to an emitter that its shadow rays must tell them from it.
+struct Touching {
+  bool any = false;
+  std::vector<Vec3f> normals;  ///< Their unit normals, render space.
+  /// How far off Embree's planes may be; infinite, without normals, where that is not known, or they are too many.
+  float off = 0;
+};
+
 /// What the shadow rays of one call end on.
 struct RayEnd {
   enum class On : uint8_t { Nothing, Point, Plane, Shape };
-  On on = On::Nothing;   ///< Nothing: rays end at t_max, as far as a float knows it.
-  bool touched = false;  ///< Triangles are within kNearEnd of it; see above.
+  On on = On::Nothing;  ///< Nothing: rays end at t_max, as far as a float knows it.
+  Touching touching{};  ///< The triangles within kNearEnd of it; see above.
   int unshaded_by =
       -1;  ///< The number of an analytic shape that does not hide its own points, if it cannot shade itself.
   Vec3d p{0, 0, 0}, n{0, 0, 1};  ///< The point; a point of the plane and its unit normal.
   Vec3d error{0, 0, 0};          ///< How far off rounding may have put p, in each coordinate.
   const AnalyticShape* analytic = nullptr;
+
+  bool touched() const { return touching.any; }
 };
 
 /// What a shadow ray ends on.

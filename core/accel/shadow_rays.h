@@ -1,8 +1,12 @@
 // The shadow rays of a call on their way through Embree: how far they are traced, and what callbacks know of their ends.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/accel/accel.h"
 #include "core/accel/embree.h"
+#include "core/base/fastmath.h"
 
 namespace whit {
 
@@ -25,15 +29,23 @@ inline const ShadowRays* shadow_of(const EmbreeContext* context) {
 
 /// How far beyond its end a ray is traced, for what decides there knows better than floats where the end is
 /// (core/accel/ray_end.h). Of a plane that nothing else is near to, t_max is in front.
-struct Beyond {
-  float stretch = 1, room = 0;
-  explicit Beyond(const RayEnd& end) {
-    const bool touched = end.on != RayEnd::On::Nothing && end.touched;
-    stretch = touched ? 2.0f : 1.0f;
-    if (touched || (end.on != RayEnd::On::Nothing && end.on != RayEnd::On::Plane))
-      room = static_cast<float>(kNearEnd / 2);
+inline void lengthen_to(const RayEnd& end, const Vec3Lanes& d, int n, float* t_far) {
+  if (end.on == RayEnd::On::Nothing || (end.on == RayEnd::On::Plane && !end.touched())) return;
+  constexpr auto kRoom = static_cast<float>(kNearEnd / 2);
+  constexpr int kBlock = 16;
+  const Touching& touching = end.touching;
+  for (int first = 0; first < n; first += kBlock) {
+    const int count = std::min(kBlock, n - first);
+    const Vec3Lanes along = d.from(first);
+    alignas(64) float sine[kBlock];
+    for (int i = 0; i < count; ++i) sine[i] = touching.normals.empty() ? 0.0f : 1.0f;
+    for (const Vec3f& normal : touching.normals) {
+      for (int i = 0; i < count; ++i) sine[i] = min_of(sine[i], std::abs(dot(normal, along[i])));
+    }
+    float* const t = t_far + first;
+    for (int i = 0; i < count; ++i) t[i] += min_of(t[i], touching.off / max_of(sine[i], 1e-30f)) + kRoom;
   }
-};
+}
 
 /// The shape that hides its own points from none of rays [first, first + count); kNobody if there is no such.
 inline int unshaded_by(const RayLanes& rays, int first, int count) {
@@ -53,20 +65,13 @@ struct ShadowEnds {
     for (int i = 0; i < (rays.ends ? rays.n : rays.end ? 1 : 0); ++i) {
       const RayEnd& end = end_of(rays, i);
       any |= end.on != RayEnd::On::Nothing;
-      touched |= end.on != RayEnd::On::Nothing && end.touched;
+      touched |= end.on != RayEnd::On::Nothing && end.touched();
     }
   }
   void lengthen(int first, int count, float* t_far) const {
     if (!any) return;
-    if (!rays.ends) {
-      const Beyond beyond(*rays.end);
-      for (int i = 0; i < count; ++i) t_far[i] = t_far[i] * beyond.stretch + beyond.room;
-      return;
-    }
-    for (int i = 0; i < count; ++i) {
-      const Beyond beyond(*rays.ends[first + i]);
-      t_far[i] = t_far[i] * beyond.stretch + beyond.room;
-    }
+    if (!rays.ends) return lengthen_to(*rays.end, rays.d.from(first), count, t_far);
+    for (int i = 0; i < count; ++i) lengthen_to(*rays.ends[first + i], rays.d.from(first + i), 1, t_far + i);
   }
 };
 

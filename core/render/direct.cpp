@@ -60,7 +60,7 @@ namespace {
 
 /// Whether a light is asked for the points it chose: rays then end there, and not before the light, whose own surface
 /// must be told from others in double precision.
-bool gives_points(const SceneLight& light) { return light.end.on == RayEnd::On::Plane && light.end.touched; }
+bool gives_points(const SceneLight& light) { return light.end.on == RayEnd::On::Plane && light.end.touched(); }
 
 }  // namespace
 

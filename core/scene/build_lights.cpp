@@ -91,7 +91,7 @@ void build_lights(const BuildContext& context, std::span<const LitShape> lit, Sc
 
 bool find_light_ends(const BuildContext& context, std::vector<SceneLight>& lights) {
   context.for_each(lights.size(), [&](size_t i, Diagnostics&) { lights[i].end = end_of(context.scene, lights[i]); });
-  return std::any_of(lights.begin(), lights.end(), [](const SceneLight& l) { return l.end.touched; });
+  return std::any_of(lights.begin(), lights.end(), [](const SceneLight& l) { return l.end.touched(); });
 }
 
 }  // namespace whit

@@ -17,7 +17,7 @@ RayEnd end_on_triangle(const Accel& accel, const Mesh& mesh, uint32_t prim) {
   Box3d box;
   for (const Vec3d& corner : corners) box.extendBy(corner);
   end.error = rounding_of(farthest_of(box));
-  end.touched = accel.is_touched(box, &corners);
+  end.touching = accel.touching(box, &corners);
   return end;
 }
 
@@ -29,7 +29,7 @@ RayEnd end_on_shape(const Accel& accel, const AnalyticShape& shape, const SceneL
   if (!light.light->is_two_sided()) end.unshaded_by = light.shape;
   const Box3d box = transform_box(shape.object_to_scene(), shape.object_bounds());
   end.error = Vec3d(rounding_of_size(shape.object_bounds(), shape.object_to_scene()));
-  end.touched = accel.is_touched(box, nullptr);
+  end.touching = accel.touching(box, nullptr);
   return end;
 }
 
@@ -46,7 +46,7 @@ RayEnd end_of(const Scene& scene, const SceneLight& light) {
   if (!position) return end;
   end.on = RayEnd::On::Point;
   end.p = *position;
-  end.touched = scene.accel->is_touched(Box3d(end.p, end.p), nullptr);
+  end.touching = scene.accel->touching(Box3d(end.p, end.p), nullptr);
   return end;
 }
 
