@@ -134,7 +134,8 @@ LightCluster cluster_of(const SceneLight& l, double scene_radius) {
     // Of a surface, radiance times area.
     c.strength = power / (detail::kPiD * (l.light->is_two_sided() ? 2 : 1));
     const Vec3d normal = Vec3d(l.reach.normal).normalized();
-    if (normal.length2() > 0.5) c.axis = normal, c.spread = 0, c.flat = true, c.two_fronts = !l.reach.one_sided;
+    if (normal.length2() > 0.5)
+      c.axis = c.mean = normal, c.spread = 0, c.flat = true, c.two_fronts = !l.reach.one_sided;
     return c;
   }
   const LightCone* cone = l.reach.cone;

@@ -35,6 +35,10 @@ double vagueness(const LightCluster& c) { return c.strength * c.box.size().lengt
 }  // namespace
 
 void add_to(LightCluster& a, const LightCluster& b) {
+  const Vec3d other = b.mean * ((a.two_fronts || b.two_fronts) && a.mean.dot(b.mean) < 0 ? -1 : 1);
+  const double both = a.strength + b.strength;
+  if (both > 0) a.mean = (a.mean * a.strength + other * b.strength) / both;
+  a.several = a.of_surfaces() && b.of_surfaces();
   a.two_fronts |= b.two_fronts, a.flat = false;
   // Of two fronts it does not matter which is called the first.
   if (a.two_fronts && a.axis.dot(b.axis) < 0) a.axis = -a.axis;
@@ -58,6 +62,8 @@ LightBall ball_around(const LightCluster& c, double unit) {
   b.fronts = c.two_fronts ? 2 : 1;
   constexpr float kSlab = 0.01f;  // of the radius
   b.slab = c.flat && b.radius > 0 ? 1 / (kSlab * b.radius) : 0;
+  b.mean = Vec3f(c.mean);
+  b.vary = c.several ? static_cast<float>((1 - std::min(c.mean.length2(), 1.0)) / 3) : -1;
   return b;
 }
 

@@ -21,6 +21,10 @@ struct LightCluster {
   bool flat = false;        ///< All of it lies in a plane across the axis.
   bool two_fronts = false;  ///< What shines along some direction does so against it too.
   double strength = 0;      ///< Radiant intensity to where it is greatest (see strength_of()).
+  bool several = false;     ///< Whether it is of flat ones, and of nothing else;
+  Vec3d mean{0, 0, 0};      ///< then the mean of their normals, by strength: the shorter, the more they differ.
+
+  bool of_surfaces() const { return flat || several; }
 };
 
 /// Adds the lights of `b` to those of `a`.
@@ -34,6 +38,8 @@ struct LightBall {
   float cos_spread, sin_spread, cos_edge, strength;
   float fronts;  ///< 1 or 2.
   float slab;    ///< Unless 0, one over the height above a flat one from which on it shines in full.
+  Vec3f mean;    ///< Of the normals of several surfaces,
+  float vary;    ///< and the variance of their cosines with a direction; below 0 of all else.
 };
 
 /// What may arrive from the ball at p, at most as far as the light's direction goes: intensity by distance squared. Never
@@ -54,12 +60,19 @@ inline float irradiance_from(const LightBall& b, const Vec3f& p) {
   const float above = dot(b.axis, to), height = b.fronts > 1 ? std::abs(above) : above, cosine = height * inverse;
   const float beyond = cosine * cos_free + safe_sqrt(1 - cosine * cosine) * sin_free;
   const bool anywhere = (squared <= wall) | ((sin_free <= 0) & (cos_free < 0)) | (cosine >= cos_free);
-  const float of_ball = anywhere ? 1.0f : beyond;
+  const float most = anywhere ? 1.0f : beyond;
+  // Of many surfaces, what their cosines are on average where positive, as if they were normally distributed. (By the
+  // most that they can be, one light of a bumpy ball of triangles has the relative variance 1.2, and 0.1 so.)
+  constexpr float kOfVariance = 0.64f, kOfBall = 1 / 3.0f;
+  const float toward = dot(b.mean, to) * inverse, middle = b.fronts > 1 ? std::abs(toward) : toward;
+  const float off = kOfVariance * (b.vary + kOfBall * min_of(sin_ball * sin_ball, 1.0f));
+  const float average = 0.5f * (middle + safe_sqrt(middle * middle + off));
+  const float of_ball = (b.vary >= 0) & (most >= b.cos_edge) ? average : most;
   // What is flat does not light itself, nor what lies in its plane.
   const float of_plane = min_of(of_ball, height * b.slab);
   const float turned = b.slab > 0 ? of_plane : of_ball;
   const float lit = max_of(turned, kTurnedAway);
-  const float share = turned >= b.cos_edge ? lit : kTurnedAway;
+  const float share = most >= b.cos_edge ? lit : kTurnedAway;
   return max_of(b.strength * share * inverse * inverse, kLeast);
 }
 
@@ -71,18 +84,27 @@ template <int N>
 struct LightBalls {
   using Lanes = std::array<float, N>;
   alignas(32) Lanes x{}, y{}, z{}, radius{}, axis_x{}, axis_y{}, axis_z{}, cos_spread{},
-      sin_spread{}, cos_edge{}, strength{}, fronts{}, slab{};
+      sin_spread{}, cos_edge{}, strength{}, fronts{}, slab{}, mean_x{}, mean_y{}, mean_z{}, vary{};
 
   LightBall operator[](size_t k) const {
-    return {{x[k], y[k], z[k]}, radius[k],     {axis_x[k], axis_y[k], axis_z[k]},
-            cos_spread[k],      sin_spread[k], cos_edge[k],
-            strength[k],        fronts[k],     slab[k]};
+    return {{x[k], y[k], z[k]},
+            radius[k],
+            {axis_x[k], axis_y[k], axis_z[k]},
+            cos_spread[k],
+            sin_spread[k],
+            cos_edge[k],
+            strength[k],
+            fronts[k],
+            slab[k],
+            {mean_x[k], mean_y[k], mean_z[k]},
+            vary[k]};
   }
   void set(size_t k, const LightBall& b) {
     x[k] = b.center.x, y[k] = b.center.y, z[k] = b.center.z, radius[k] = b.radius;
     axis_x[k] = b.axis.x, axis_y[k] = b.axis.y, axis_z[k] = b.axis.z;
     cos_spread[k] = b.cos_spread, sin_spread[k] = b.sin_spread, cos_edge[k] = b.cos_edge;
     strength[k] = b.strength, fronts[k] = b.fronts, slab[k] = b.slab;
+    mean_x[k] = b.mean.x, mean_y[k] = b.mean.y, mean_z[k] = b.mean.z, vary[k] = b.vary;
   }
   /// irradiance_from() of all of them.
   void weigh(const Vec3f& p, Lanes& out) const {
