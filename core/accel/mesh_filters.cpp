@@ -34,13 +34,15 @@ bool meets_before_end(const ShadowRays& shadow, const GeometryUser& user, const 
                       unsigned i) {
   const RayLanes& rays = shadow.rays;
   const unsigned width = args->N;
+  const auto id = static_cast<int>(RTCRayN_id(args->ray, width, i));
+  const RayEnd& end = end_of(rays, id);
+  if (end.on == RayEnd::On::Nothing) return true;
+  // What every ray that nothing stops meets last.
+  if (user.mesh.positions == end.own_vertices && RTCHitN_primID(args->hit, width, i) == end.own_triangle) return false;
   const Vec3f d(RTCRayN_dir_x(args->ray, width, i), RTCRayN_dir_y(args->ray, width, i),
                 RTCRayN_dir_z(args->ray, width, i));
   const Vec3f n(RTCHitN_Ng_x(args->hit, width, i), RTCHitN_Ng_y(args->hit, width, i),
                 RTCHitN_Ng_z(args->hit, width, i));
-  const auto id = static_cast<int>(RTCRayN_id(args->ray, width, i));
-  const RayEnd& end = end_of(rays, id);
-  if (end.on == RayEnd::On::Nothing) return true;
   // How far the end is behind the triangle's plane, in the space of its group, as far as floats tell.
   const float behind = (rays.t_max[id] - RTCRayN_tfar(args->ray, width, i)) * std::abs(n.dot(d)) / n.length();
   const float unsure = static_cast<float>(kNearEnd) * d.length();

@@ -56,6 +56,9 @@ struct RayEnd {
   Vec3d p{0, 0, 0}, n{0, 0, 1};  ///< The point; a point of the plane and its unit normal.
   Vec3d error{0, 0, 0};          ///< How far off rounding may have put p, in each coordinate.
   const AnalyticShape* analytic = nullptr;
+  /// Of a plane: the vertices and the number of the triangle whose plane it is. It never hides its own points.
+  const float* own_vertices = nullptr;
+  uint32_t own_triangle = 0;
 
   bool touched() const { return touching.any; }
 };

@@ -18,6 +18,7 @@ RayEnd end_on_triangle(const Accel& accel, const Mesh& mesh, uint32_t prim) {
   for (const Vec3d& corner : corners) box.extendBy(corner);
   end.error = rounding_of(farthest_of(box));
   end.touching = accel.touching(box, &corners);
+  end.own_vertices = mesh.positions.data(), end.own_triangle = prim;
   return end;
 }
 
