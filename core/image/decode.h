@@ -1,24 +1,27 @@
-// The decoders behind read_image(): libspng for PNG, OpenImageIO (core/image/oiio/module.h) for everything else.
+// The decoders behind open_picture(): one each for the kinds that most textures are, so that OpenImageIO
+// (core/image/oiio/module.h) need not be there, and that for everything else.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
-#include "core/image/image.h"
+#include "core/image/picture_rows.h"
 
 namespace whit {
 
-/// One decoder. All throw std::runtime_error with the reason, which does not name the file.
-struct PictureReader {
-  ImageInfo (*probe)(const std::string& path);
-  Image (*read)(const std::string& path);
-  ByteImage (*read_bytes)(const std::string& path);
-};
+/// Open a file of that kind.
+std::unique_ptr<PictureRows> open_png(const std::string& path);
+std::unique_ptr<PictureRows> open_jpeg(const std::string& path);
+std::unique_ptr<PictureRows> open_tga(const std::string& path);
 
-/// Reads PNG files.
-extern const PictureReader kPngReader;
+/// Opens a file of any kind that is known.
+std::unique_ptr<PictureRows> open_picture(const std::string& path);
+
+/// The error for users, which names the file, when opening or reading it has thrown `e`.
+std::string picture_error(const std::string& path, const std::exception& e);
 
 /// Why a header cannot be true, or "": a header may lie, and allocating what it claims can take the machine down.
 inline std::string size_problem(const std::string& path, const ImageInfo& info) {

@@ -1,101 +1,182 @@
-// PNG files, decoded by libspng: most textures are, and OpenImageIO takes longer to load than many of them to decode.
-#include <spng.h>
-
-#include <cerrno>
-#include <cstdio>
+// PNG files: most textures are, and OpenImageIO takes longer to load than many of them to decode. Rows come out of deflate
+// a few at a time and are made into pixels there; only of interlaced files there is a whole picture in memory.
+#include <algorithm>
 #include <cstring>
-#include <memory>
 #include <stdexcept>
 
 #include "core/image/decode.h"
+#include "core/image/png_filter.h"
+#include "core/image/png_stream.h"
 
 namespace whit {
 namespace {
 
-void check(int error) {
-  if (error != 0) throw std::runtime_error(spng_strerror(error));
-}
-
-/// An open file, its header read.
-class PngFile {
+/// Rows of pixels as the file packs them, each `pixels` wide.
+class PackedRows {
  public:
-  explicit PngFile(const std::string& path)
-      : file_(std::fopen(path.c_str(), "rb"), std::fclose), png_(spng_ctx_new(0), spng_ctx_free) {
-    if (!file_) throw std::runtime_error(std::strerror(errno));
-    check(spng_set_png_file(png_.get(), file_.get()));
-    check(spng_get_ihdr(png_.get(), &header_));
-    set_info();
-    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+  PackedRows(PngStream& stream, int pixels, int rows)
+      : stream_(stream), row_bytes_(stream.header.row_bytes(pixels)), left_(rows) {
+    strip_.resize((row_bytes_ + 1) * rows_in_strip() + kPngFilterReadsOn);
+    above_.resize(row_bytes_ + kPngFilterReadsOn);
+    step_ = std::max(1, stream.header.numbers() * stream.header.bits / 8);
   }
 
-  /// The picture as the file has it, with palettes and numbers of less than 8 bits expanded; 16 bits in native order.
-  template <class Number>
-  std::vector<Number> decode() {
-    size_t bytes = 0;
-    check(spng_decoded_image_size(png_.get(), format_, &bytes));
-    std::vector<Number> pixels(bytes / sizeof(Number));
-    check(spng_decode_image(png_.get(), pixels.data(), bytes, format_, 0));
-    return pixels;
+  const uint8_t* next() {
+    if (at_ == end_) refill();
+    uint8_t* const row = strip_.data() + at_;
+    if (!undo_png_filter(row[0], row + 1, last_ ? last_ : above_.data(), row_bytes_, step_))
+      throw std::runtime_error("it has a filter that PNG does not have");
+    last_ = row + 1;
+    at_ += row_bytes_ + 1;
+    return last_;
   }
-
-  ImageInfo info;
 
  private:
-  void set_info() {
-    const bool wide = header_.bit_depth == 16;
-    info.width = info.full_width = static_cast<int>(header_.width);
-    info.height = info.full_height = static_cast<int>(header_.height);
-    info.format = wide ? SampleFormat::UInt16 : SampleFormat::UInt8;
-    info.metadata["oiio:ColorSpace"] = "sRGB";  // as OpenImageIO has it, and the format where a file says nothing else
-    const auto layout = [&](std::vector<std::string> names, spng_format narrow) {
-      info.channels = static_cast<int>(names.size());
-      info.channel_names = std::move(names);
-      format_ = wide ? SPNG_FMT_PNG : narrow;
-    };
-    switch (header_.color_type) {
-      case SPNG_COLOR_TYPE_GRAYSCALE: layout({"Y"}, SPNG_FMT_G8); break;
-      case SPNG_COLOR_TYPE_GRAYSCALE_ALPHA: layout({"Y", "A"}, SPNG_FMT_PNG); break;
-      case SPNG_COLOR_TYPE_TRUECOLOR_ALPHA: layout({"R", "G", "B", "A"}, SPNG_FMT_RGBA8); break;
-      default: layout({"R", "G", "B"}, SPNG_FMT_RGB8); break;
+  // As many as take the place of deflate's window four times over: each part makes it remember its window anew.
+  size_t rows_in_strip() const {
+    return std::min(static_cast<size_t>(left_), std::max(size_t{1}, (size_t{1} << 17) / (row_bytes_ + 1)));
+  }
+
+  void refill() {
+    if (last_) std::memcpy(above_.data(), last_, row_bytes_);
+    last_ = nullptr;
+    const size_t rows = rows_in_strip();
+    at_ = 0, end_ = rows * (row_bytes_ + 1);
+    stream_.read(strip_.data(), end_);
+    left_ -= static_cast<int>(rows);
+  }
+
+  PngStream& stream_;
+  size_t row_bytes_;
+  int left_, step_ = 1;
+  std::vector<uint8_t> strip_, above_;  // of the row before the strip's, at first zeros
+  size_t at_ = 0, end_ = 0;
+  const uint8_t* last_ = nullptr;  // the row before, when it is in the strip
+};
+
+/// From packed pixels to numbers of 8 bits, or of 16 in the order of the file.
+class Unpacker {
+ public:
+  explicit Unpacker(const PngStream& stream) : header_(stream.header), palette_(stream.palette) {
+    // Numbers of few bits stand for the same range as those of eight.
+    const int most = (1 << std::min(header_.bits, 8)) - 1;
+    for (int i = 0; i <= most; ++i) grey_[i] = static_cast<uint8_t>(i * 255 / most);
+  }
+
+  bool needed() const { return header_.bits < 8 || header_.colour == PngHeader::Palette; }
+
+  void unpack(const uint8_t* from, int pixels, uint8_t* to) const {
+    const int bits = header_.bits;
+    if (bits > 8 || !needed()) {
+      std::memcpy(to, from, header_.row_bytes(pixels));
+      return;
+    }
+    const int mask = (1 << bits) - 1;
+    for (int x = 0; x < pixels; ++x) {
+      const int bit = x * bits, v = from[bit >> 3] >> (8 - bits - (bit & 7)) & mask;
+      if (header_.colour == PngHeader::Palette) to = std::copy_n(&palette_[3 * v], 3, to);
+      else *to++ = grey_[v];
     }
   }
 
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
-  std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> png_;
-  spng_ihdr header_{};
-  int format_ = SPNG_FMT_PNG;
+ private:
+  const PngHeader& header_;
+  const std::array<uint8_t, 3 * 256>& palette_;
+  std::array<uint8_t, 256> grey_{};
 };
 
-template <class Number>
-std::vector<float> scaled(const std::vector<Number>& numbers) {
-  std::vector<float> out(numbers.size());
-  constexpr float kMost = static_cast<Number>(~Number{0});
-  for (size_t i = 0; i < numbers.size(); ++i) out[i] = static_cast<float>(numbers[i]) / kMost;
-  return out;
-}
+class PngRows : public PictureRows {
+ public:
+  explicit PngRows(const std::string& path) : stream_(path), unpacker_(stream_) {
+    set_info();
+    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+    pixel_bytes_ = static_cast<size_t>(info.channels) * (wide() ? 2 : 1);
+  }
 
-ImageInfo probe(const std::string& path) { return PngFile(path).info; }
+  const uint8_t* next_bytes() override {
+    const uint8_t* row = stream_.header.interlaced ? next_of_whole() : next_of_stream();
+    if (++row_ == info.height) stream_.finish();
+    return row;
+  }
 
-Image read(const std::string& path) {
-  PngFile file(path);
-  const bool wide = file.info.format == SampleFormat::UInt16;
-  Image image;
-  static_cast<ImageInfo&>(image) = file.info;
-  image.pixels = wide ? scaled(file.decode<uint16_t>()) : scaled(file.decode<uint8_t>());
-  return image;
-}
+  const float* next_floats() override {
+    const uint8_t* row = next_bytes();
+    floats_.resize(static_cast<size_t>(info.width) * info.channels);
+    for (size_t i = 0; i < floats_.size(); ++i)
+      floats_[i] = static_cast<float>(row[2 * i] << 8 | row[2 * i + 1]) / 65535;
+    return floats_.data();
+  }
 
-ByteImage read_bytes(const std::string& path) {
-  PngFile file(path);
-  if (file.info.format != SampleFormat::UInt8) throw std::runtime_error("its numbers have more than 8 bits");
-  ByteImage image;
-  static_cast<ImageInfo&>(image) = file.info;
-  image.pixels = file.decode<uint8_t>();
-  return image;
-}
+  size_t memory() const override {
+    const size_t row = info.width * pixel_bytes_, whole = stream_.header.interlaced ? row * info.height : 0;
+    return PngStream::memory() + (size_t{1} << 17) + 8 * row + whole;
+  }
+
+ private:
+  bool wide() const { return stream_.header.bits == 16; }
+
+  void set_info() {
+    const PngHeader& h = stream_.header;
+    info.width = info.full_width = h.width;
+    info.height = info.full_height = h.height;
+    info.format = wide() ? SampleFormat::UInt16 : SampleFormat::UInt8;
+    info.metadata["oiio:ColorSpace"] = "sRGB";  // as OpenImageIO has it, and the format where a file says nothing else
+    switch (h.colour) {
+      case PngHeader::Grey: info.channel_names = {"Y"}; break;
+      case PngHeader::GreyAlpha: info.channel_names = {"Y", "A"}; break;
+      case PngHeader::RgbAlpha: info.channel_names = {"R", "G", "B", "A"}; break;
+      default: info.channel_names = {"R", "G", "B"}; break;
+    }
+    info.channels = static_cast<int>(info.channel_names.size());
+  }
+
+  const uint8_t* next_of_stream() {
+    if (!packed_) packed_ = std::make_unique<PackedRows>(stream_, info.width, info.height);
+    const uint8_t* const row = packed_->next();
+    if (!unpacker_.needed()) return row;
+    pixels_.resize(info.width * pixel_bytes_);
+    unpacker_.unpack(row, info.width, pixels_.data());
+    return pixels_.data();
+  }
+
+  const uint8_t* next_of_whole() {
+    if (pixels_.empty()) read_whole();
+    return pixels_.data() + static_cast<size_t>(row_) * info.width * pixel_bytes_;
+  }
+
+  // The seven pictures of Adam7, each made of pixels of the whole that lie apart.
+  void read_whole() {
+    pixels_.resize(static_cast<size_t>(info.width) * info.height * pixel_bytes_);
+    constexpr struct {
+      int x, y, dx, dy;
+    } passes[] = {{0, 0, 8, 8}, {4, 0, 8, 8}, {0, 4, 4, 8}, {2, 0, 4, 4}, {0, 2, 2, 4}, {1, 0, 2, 2}, {0, 1, 1, 2}};
+    std::vector<uint8_t> part;
+    for (const auto& pass : passes) {
+      const int width = (info.width - pass.x + pass.dx - 1) / pass.dx,
+                height = (info.height - pass.y + pass.dy - 1) / pass.dy;
+      if (width <= 0 || height <= 0) continue;
+      PackedRows rows(stream_, width, height);
+      part.resize(width * pixel_bytes_);
+      for (int y = pass.y; y < info.height; y += pass.dy) {
+        unpacker_.unpack(rows.next(), width, part.data());
+        uint8_t* const to = pixels_.data() + (static_cast<size_t>(y) * info.width + pass.x) * pixel_bytes_;
+        for (int x = 0; x < width; ++x)
+          std::copy_n(&part[x * pixel_bytes_], pixel_bytes_, to + static_cast<size_t>(x) * pass.dx * pixel_bytes_);
+      }
+    }
+  }
+
+  PngStream stream_;
+  Unpacker unpacker_;
+  size_t pixel_bytes_ = 0;
+  std::unique_ptr<PackedRows> packed_;
+  std::vector<uint8_t> pixels_;  // the row, or the picture if it is interlaced
+  std::vector<float> floats_;
+  int row_ = 0;
+};
 
 }  // namespace
 
-const PictureReader kPngReader{probe, read, read_bytes};
+std::unique_ptr<PictureRows> open_png(const std::string& path) { return std::make_unique<PngRows>(path); }
 
 }  // namespace whit

@@ -2,21 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <new>
+#include <stdexcept>
 
+#include "core/image/decode.h"
 #include "core/image/oiio/module.h"
 #include "core/image/signature.h"
 
 namespace whit {
 namespace {
-
-std::string read_error(const std::string& path, std::string reason) {
-  while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
-  if (reason.empty()) reason = "not a picture in a known format";
-  return fmt::format("cannot read image \"{}\": {}", path, reason);
-}
 
 // Why a path cannot be a picture at all, or "": OpenImageIO's own texts for these name formats, not reasons.
 std::string file_problem(const std::string& path) {
@@ -32,17 +30,29 @@ std::string file_problem(const std::string& path) {
   return std::strerror(errno);
 }
 
-const PictureReader& reader_of(const std::string& path) { return begins_like_a_png(path) ? kPngReader : oiio().reader; }
-
-// What `read` makes of a file, or an error that names it.
-template <class T>
-Result<T> read_file(const std::string& path, T (*PictureReader::*read)(const std::string&)) {
+// What `take` makes of an open file, or an error that names it.
+template <class T, class Take>
+Result<T> from_file(const std::string& path, const Take& take) {
   try {
-    if (std::string problem = file_problem(path); !problem.empty()) return {{}, read_error(path, problem)};
-    return {(reader_of(path).*read)(path), ""};
-  } catch (const std::bad_alloc&) {
-    return {{}, read_error(path, "not enough memory")};
-  } catch (const std::exception& e) { return {{}, read_error(path, e.what())}; }
+    return {take(*open_picture(path)), ""};
+  } catch (const std::exception& e) { return {{}, picture_error(path, e)}; }
+}
+
+Image read_all(PictureRows& rows) {
+  Image image;
+  static_cast<ImageInfo&>(image) = rows.info;
+  const size_t row = static_cast<size_t>(image.width) * image.channels;
+  image.pixels.resize(row * image.height);
+  for (int y = 0; y < image.height; ++y) {
+    float* const to = image.pixels.data() + row * (rows.bottom_first ? image.height - 1 - y : y);
+    if (image.format == SampleFormat::UInt8) {
+      const uint8_t* const from = rows.next_bytes();
+      std::transform(from, from + row, to, [](uint8_t v) { return static_cast<float>(v) / 255; });
+    } else {
+      std::copy_n(rows.next_floats(), row, to);
+    }
+  }
+  return image;
 }
 
 }  // namespace
@@ -60,10 +70,27 @@ std::vector<int> ImageInfo::rgb_channels() const {
   return {0, 0, 0};
 }
 
-Result<ImageInfo> probe_image(const std::string& path) { return read_file(path, &PictureReader::probe); }
+std::unique_ptr<PictureRows> open_picture(const std::string& path) {
+  if (const std::string problem = file_problem(path); !problem.empty()) throw std::runtime_error(problem);
+  switch (kind_of_picture(path)) {
+    case PictureKind::Png: return open_png(path);
+    case PictureKind::Jpeg: return open_jpeg(path);
+    case PictureKind::Tga: return open_tga(path);
+    default: return oiio().open(path);
+  }
+}
 
-Result<Image> read_image(const std::string& path) { return read_file(path, &PictureReader::read); }
+std::string picture_error(const std::string& path, const std::exception& e) {
+  std::string reason = dynamic_cast<const std::bad_alloc*>(&e) ? "not enough memory" : e.what();
+  while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
+  if (reason.empty()) reason = "not a picture in a known format";
+  return fmt::format("cannot read image \"{}\": {}", path, reason);
+}
 
-Result<ByteImage> read_byte_image(const std::string& path) { return read_file(path, &PictureReader::read_bytes); }
+Result<ImageInfo> probe_image(const std::string& path) {
+  return from_file<ImageInfo>(path, [](const PictureRows& rows) { return rows.info; });
+}
+
+Result<Image> read_image(const std::string& path) { return from_file<Image>(path, read_all); }
 
 }  // namespace whit

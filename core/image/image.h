@@ -1,7 +1,7 @@
-// Reading pictures: any file OpenImageIO knows, as plain arrays of floats, top row first.
+// Reading pictures of any kind that is known, as plain arrays of floats, top row first.
 //
 // Nothing is decoded: the numbers are the file's, integers divided by their maximum, so an 8-bit sRGB value
-// 188 is 188/255 = 0.737. Alpha is never multiplied into the colour. OpenImageIO decodes (core/image/oiio).
+// 188 is 188/255 = 0.737. Alpha is never multiplied into the colour.
 #pragma once
 
 #include <cstdint>
@@ -60,8 +60,5 @@ Result<ImageInfo> probe_image(const std::string& path);
 /// not the extension). All channels, raw: no gamma decoding, no premultiplication, no tone mapping. A header
 /// that claims far more pixels than the file can hold is an error. The error names the file and the reason.
 Result<Image> read_image(const std::string& path);
-
-/// The same for a picture of 8-bit numbers (SampleFormat::UInt8): the file's bytes, in a quarter of the memory.
-Result<ByteImage> read_byte_image(const std::string& path);
 
 }  // namespace whit

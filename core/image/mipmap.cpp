@@ -1,161 +1,319 @@
 // Building the pyramid; mipmap_lookup.cpp filters.
+//
+// A picture comes in row by row, and a level makes a row of two rows of the finer one. So of levels that are not kept there are
+// two rows in memory, and of a picture whose sides are powers of two only what the reader holds.
 #include "core/image/mipmap.h"
 
-#include <tbb/parallel_for.h>
+#ifdef __F16C__
+#include <immintrin.h>
+#endif
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
+
+#include "core/image/picture_rows.h"
 
 namespace whit {
 namespace {
 
-// The coarser level of one whose numbers are value(0), value(1), ...: each texel the mean of four. A side that is 1
-// already takes texel 1 from outside: the same texel again when the texture repeats or clamps, nothing when it is
-// black there (as in pbrt-v3).
-template <class Value>
-Texels halve(int width, int height, int channels, WrapMode wrap, const Value& value) {
-  Texels out{std::max(1, width / 2), std::max(1, height / 2), channels, {}};
-  out.values.resize(static_cast<size_t>(out.width) * out.height * channels);
-  const size_t texel = static_cast<size_t>(channels), row = texel * width;
-  const size_t right = width > 1 ? texel : 0, below = height > 1 ? row : 0;
-  const bool has_right = right > 0 || wrap != WrapMode::Black, has_below = below > 0 || wrap != WrapMode::Black;
-  tbb::parallel_for(0, out.height, [&](int t) {
-    float* to = out.values.data() + static_cast<size_t>(t) * out.width * texel;
-    for (int s = 0; s < out.width; ++s) {
-      const size_t first = 2 * t * row + 2 * s * texel;
-      for (size_t i = first; i < first + texel; ++i) {
-        float sum = value(i);
-        if (has_right) sum += value(i + right);
-        if (has_below) sum += value(i + below);
-        if (has_right && has_below) sum += value(i + right + below);
-        *to++ = 0.25f * sum;
-      }
-    }
-  });
-  return out;
-}
-
-Texels halve(const Texels& fine, WrapMode wrap) {
-  return halve(fine.width, fine.height, fine.channels, wrap, [v = fine.values.data()](size_t i) { return v[i]; });
-}
-
-bool fits_half(const Texels& texels) {
-  return std::all_of(texels.values.begin(), texels.values.end(), [](float v) { return std::abs(v) <= 65504.0f; });
-}
-
 bool is_grey(const ImageInfo& image) { return image.rgb_channels()[0] == image.rgb_channels()[1]; }
+
+int channels_of(const ImageInfo& image, const MipMapOptions& options) {
+  return options.single || is_grey(image) ? 1 : 3;
+}
+
+bool sides_are_powers_of_two(const ImageInfo& image) {
+  return is_power_of_two(image.width) && is_power_of_two(image.height);
+}
 
 // Whether level 0 can be the file's bytes: nothing is computed of them but one value each.
 bool keeps_bytes(const ImageInfo& image, const MipMapOptions& options) {
   return image.format == SampleFormat::UInt8 && options.scale >= 0 && (is_grey(image) || !options.single) &&
-         is_power_of_two(image.width) && is_power_of_two(image.height);
+         sides_are_powers_of_two(image);
 }
 
-// The picture's colour channels, flipped as asked for.
-auto colour_bytes(const ByteImage& image, int channels, bool flip) {
-  const std::vector<int> rgb = image.rgb_channels();
-  std::vector<uint8_t, PageAllocator<uint8_t>> bytes(static_cast<size_t>(image.width) * image.height * channels);
-  uint8_t* to = bytes.data();
-  for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) {
-      const uint8_t* p = image.pixel(x, flip ? image.height - 1 - y : y);
-      for (int c = 0; c < channels; ++c) *to++ = p[rgb[c]];
-    }
-  return bytes;
+// Whether values are stored without their scale, so that no scale can drive them out of range of halves. A negative one
+// meets the clamp of the enlargement, so there the scale has to come first.
+bool scales_last(const ImageInfo& image, const MipMapOptions& options) {
+  return image.format != SampleFormat::Float && options.scale >= 0;
 }
+
+bool fit_halves(const float* values, size_t n) {
+  return std::all_of(values, values + n, [](float v) { return std::abs(v) <= 65504.0f; });
+}
+
+void to_halves(const float* from, size_t n, Imath::half* to) {
+  size_t i = 0;
+#ifdef __F16C__
+  for (; i + 8 <= n; i += 8)
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to + i), _mm256_cvtps_ph(_mm256_loadu_ps(from + i), 0));
+#endif
+  for (; i < n; ++i) to[i] = Imath::half(from[i]);
+}
+
+// A row of the coarser level: each texel the mean of four. `sums` has room for a row of the finer one.
+void halve_rows(const float* upper, const float* lower, int width, int channels, WrapMode wrap, float* sums,
+                float* out) {
+  const size_t c = static_cast<size_t>(channels), n = c * static_cast<size_t>(width);
+  if (width > 1 && lower) {
+    // All sums of neighbours, of which every second is wanted: arithmetic that vectorises, for three channels too.
+    for (size_t i = 0; i < n - c; ++i) sums[i] = 0.25f * (upper[i] + upper[i + c] + lower[i] + lower[i + c]);
+  } else {
+    // A side that is 1 already takes texel 1 from outside: the same texel again when the texture repeats or clamps, nothing
+    // when it is black there (as in pbrt-v3).
+    const size_t right = width > 1 ? c : 0;
+    const bool has_right = right > 0 || wrap != WrapMode::Black;
+    for (size_t i = 0; i < std::max(n - c, c); ++i) {
+      float sum = upper[i];
+      if (has_right) sum += upper[i + right];
+      if (lower) sum += lower[i];
+      if (lower && has_right) sum += lower[i + right];
+      sums[i] = 0.25f * sum;
+    }
+  }
+  const size_t count = static_cast<size_t>(std::max(1, width / 2));
+  if (c == 1) {
+    for (size_t s = 0; s < count; ++s) out[s] = sums[2 * s];
+  } else {
+    for (size_t s = 0; s < count; ++s) std::copy_n(sums + 6 * s, 3, out + 3 * s);
+  }
+}
+
+// Rows of a picture in memory.
+template <class Number>
+class ArrayRows : public PictureRows {
+ public:
+  explicit ArrayRows(const PixelArray<Number>& image) : image_(image) { info = image; }
+  const uint8_t* next_bytes() override { return next<uint8_t>(); }
+  const float* next_floats() override { return next<float>(); }
+  size_t memory() const override { return 0; }
+
+ private:
+  template <class N>
+  const N* next() {
+    if constexpr (std::is_same_v<N, Number>) return image_.pixel(0, row_++);
+    else throw std::logic_error("the picture has other numbers");
+  }
+  const PixelArray<Number>& image_;
+  int row_ = 0;
+};
 
 }  // namespace
 
-MipMap::MipMap(Image image, const MipMapOptions& options) : wrap_(options.wrap) {
-  // Halves store the unscaled values, so that no scale can drive them out of range. A negative scale meets
-  // the clamp of the resampling, so there the scale has to come first.
-  const bool as_half = image.format != SampleFormat::Float && options.scale >= 0;
-  Texels texels = make_texels(image, options.single, options.gamma, as_half ? 1 : options.scale, options.flip);
-  image.pixels = {};
-  add_levels(resample_to_power_of_two(std::move(texels), wrap_), as_half, options.scale);
-}
-
-MipMap::MipMap(ByteImage image, const MipMapOptions& options) : wrap_(options.wrap) {
-  if (keeps_bytes(image, options)) {
-    channels_ = is_grey(image) ? 1 : 3;
-    add_byte_levels(std::move(image), options);
-    return;
+// Fills levels of an outline.
+class MipMap::Builder {
+ public:
+  Builder(MipMap& map, const ImageInfo& image, const MipMapOptions& options, int first)
+      : map_(map),
+        image_(image),
+        options_(options),
+        texels_(image, options.single, options.gamma, scales_last(image, options) ? 1 : options.scale),
+        below_(map.levels_.size()) {
+    map.first_ = first;
+    for (int i = first; i < map.level_count(); ++i) map.levels_[i] = allocate(i);
+    row_.resize(numbers(0));
+    sums_.resize(numbers(0));
+    for (size_t i = 1; i < below_.size(); ++i) below_[i].row.resize(numbers(static_cast<int>(i)));
   }
-  const bool as_half = options.scale >= 0;
-  Texels texels = make_texels(image, options.single, options.gamma, as_half ? 1 : options.scale, options.flip);
-  image.pixels = {};
-  add_levels(resample_to_power_of_two(std::move(texels), wrap_), as_half, options.scale);
-}
 
-// The picture's own bytes, with the table that decodes them, and what is coarser in halves.
-void MipMap::add_byte_levels(ByteImage image, const MipMapOptions& options) {
-  const auto finest = std::make_shared<Level>();
-  levels_.push_back(finest);
-  finest->width = image.width;
-  finest->height = image.height;
-  finest->storage = Storage::Bytes;
-  finest->bytes = colour_bytes(image, channels_, options.flip);
-  image.pixels = {};
-  const std::array<float, 256> values = byte_values(options.gamma);
-  std::transform(values.begin(), values.end(), byte_values_.begin(), [&](float v) { return options.scale * v; });
-  if (finest->width == 1 && finest->height == 1) return;
-  const auto value = [&values, bytes = finest->bytes.data()](size_t i) { return values[bytes[i]]; };
-  add_levels(halve(finest->width, finest->height, channels_, wrap_, value), true, options.scale);
-}
-
-// `texels` and all that are coarser, as halves where wanted and possible: then the scale is still to be applied.
-void MipMap::add_levels(Texels texels, bool as_half, float scale) {
-  if (as_half && !fits_half(texels)) {
-    as_half = false;
-    for (float& v : texels.values) v *= scale;
+  void read(PictureRows& rows) {
+    flips_ = options_.flip != rows.bottom_first;
+    if (!sides_are_powers_of_two(image_)) return read_and_enlarge(rows);
+    for (int y = 0; y < image_.height; ++y) {
+      const int t = flipped(y);
+      if (image_.format != SampleFormat::UInt8) {
+        texels_.convert(rows.next_floats(), row_.data());
+        add_finest(t);
+      } else {
+        add_bytes(t, rows.next_bytes());
+      }
+    }
   }
-  channels_ = texels.channels;
-  gain_ = as_half ? scale : 1;
-  for (;;) {
+
+  // Most of what read() has in memory, besides the rows' own and the levels.
+  static size_t bytes_to_read(const ImageInfo& image, const MipMapOptions& options) {
+    const size_t channels = channels_of(image, options), pixels = static_cast<size_t>(image.width) * image.height;
+    const size_t strips = sizeof(float) * channels * 12 * std::bit_ceil(static_cast<unsigned>(image.width));
+    if (sides_are_powers_of_two(image)) return strips;
+    return strips + pixels * (image.format == SampleFormat::UInt8 ? image.channels : sizeof(float) * channels);
+  }
+
+ private:
+  // What is needed to make rows of a level: the row before, where one of two has come in.
+  struct Below {
+    std::vector<float> row, waiting;
+    bool waits = false;
+  };
+
+  // From the number of a row that comes in to that of a texel's, and back.
+  int flipped(int y) const { return flips_ ? image_.height - 1 - y : y; }
+
+  size_t numbers(int level) const { return static_cast<size_t>(map_.width(level)) * map_.channels_; }
+
+  std::shared_ptr<const Level> allocate(int i) {
+    auto level = std::make_shared<Level>();
+    level->width = map_.width(i);
+    level->height = map_.height(i);
+    level->storage = map_.storage(i);
+    const size_t n = numbers(i) * level->height;
+    if (level->storage == Storage::Bytes) level->bytes.resize(n);
+    if (level->storage == Storage::Floats) level->floats.resize(n);
+    if (level->storage == Storage::Halves) {
+      level->halves.reserve(n + 1);  // lookups read a texel of three as four
+      level->halves.resize(n);
+    }
+    return level;
+  }
+
+  // Only the builder writes to levels, and only to its own.
+  Level& level(int i) { return const_cast<Level&>(*map_.levels_[i]); }
+
+  void add_bytes(int t, const uint8_t* pixels) {
+    if (map_.storage(0) != Storage::Bytes) {
+      texels_.convert(pixels, row_.data());
+      return add_finest(t);
+    }
+    if (map_.first_ == 0) texels_.pick(pixels, level(0).bytes.data() + numbers(0) * t);
+    if (map_.level_count() == 1) return;
+    texels_.convert(pixels, row_.data());
+    descend(0, t, row_.data());
+  }
+
+  // row_, of level 0, its texels still without the scale if that comes last.
+  void add_finest(int t) {
+    if (map_.storage(0) == Storage::Halves) {
+      if (image_.format == SampleFormat::Half && !fit_halves(row_.data(), row_.size())) throw ExceedsHalves();
+    } else if (scales_last(image_, options_)) {
+      for (float& v : row_) v *= options_.scale;
+    }
+    add(0, t, row_.data());
+  }
+
+  void add(int i, int t, const float* row) {
+    if (i >= map_.first_) {
+      Level& to = level(i);
+      const size_t n = numbers(i), at = n * t;
+      if (to.storage == Storage::Halves) to_halves(row, n, to.halves.data() + at);
+      else std::copy_n(row, n, to.floats.data() + at);
+    }
+    if (i + 1 < map_.level_count()) descend(i, t, row);
+  }
+
+  // Row t of level i and the one that it makes a row of the next level with, when both are there. They come in order, or in
+  // reverse order.
+  void descend(int i, int t, const float* row) {
+    Below& next = below_[i + 1];
+    const float *upper = row, *lower = map_.wrap_ == WrapMode::Black ? nullptr : row;
+    if (map_.height(i) > 1) {
+      next.waits = !next.waits;
+      if (next.waits) return next.waiting.assign(row, row + numbers(i));
+      upper = t % 2 == 0 ? row : next.waiting.data();
+      lower = t % 2 == 0 ? next.waiting.data() : row;
+    }
+    halve_rows(upper, lower, map_.width(i), map_.channels_, map_.wrap_, sums_.data(), next.row.data());
+    add(i + 1, t / 2, next.row.data());
+  }
+
+  // Rows far apart make the first, where the texture repeats: the picture has to be there.
+  void read_and_enlarge(PictureRows& rows) {
+    const bool bytes = image_.format == SampleFormat::UInt8;
+    const size_t row = static_cast<size_t>(image_.width) * (bytes ? image_.channels : map_.channels_);
+    std::vector<uint8_t, PageAllocator<uint8_t>> pixels(bytes ? row * image_.height : 0);
+    std::vector<float, PageAllocator<float>> texels(bytes ? 0 : row * image_.height);
+    for (int y = 0; y < image_.height; ++y) {
+      if (bytes) std::copy_n(rows.next_bytes(), row, pixels.data() + row * y);
+      else texels_.convert(rows.next_floats(), texels.data() + row * y);
+    }
+    EnlargedRows enlarged(image_.width, image_.height, map_.channels_, map_.wrap_, [&](int t, float* to) {
+      if (bytes) texels_.convert(pixels.data() + row * flipped(t), to);
+      else std::copy_n(texels.data() + row * flipped(t), row, to);
+    });
+    for (int t = 0; t < map_.height(); ++t) {
+      enlarged.make(t, row_.data());
+      add_finest(t);
+    }
+  }
+
+  MipMap& map_;
+  const ImageInfo& image_;
+  const MipMapOptions& options_;
+  TexelRows texels_;
+  bool flips_ = false;
+  std::vector<float> row_, sums_;
+  std::vector<Below> below_;
+};
+
+MipMap::MipMap(const ImageInfo& image, const MipMapOptions& options)
+    : channels_(channels_of(image, options)), wrap_(options.wrap) {
+  finest_storage_ = keeps_bytes(image, options) ? Storage::Bytes : Storage::Halves;
+  coarse_storage_ = Storage::Halves;
+  if (!scales_last(image, options) || options.floats) finest_storage_ = coarse_storage_ = Storage::Floats;
+  gain_ = coarse_storage_ == Storage::Halves ? options.scale : 1;
+  if (finest_storage_ == Storage::Bytes) {
+    byte_values_ = byte_values(options.gamma);
+    for (float& v : byte_values_) v *= options.scale;
+  }
+  auto width = std::bit_ceil(static_cast<unsigned>(image.width)),
+       height = std::bit_ceil(static_cast<unsigned>(image.height));
+  for (;; width = std::max(1u, width / 2), height = std::max(1u, height / 2)) {
     const auto level = std::make_shared<Level>();
     levels_.push_back(level);
-    level->width = texels.width;
-    level->height = texels.height;
-    level->storage = as_half ? Storage::Halves : Storage::Floats;
-    const bool last = texels.width == 1 && texels.height == 1;
-    Texels coarser = last ? Texels{} : halve(texels, wrap_);
-    if (as_half) {
-      level->halves.reserve(texels.values.size() + 1);  // lookups read a texel of three as four
-      level->halves.assign(texels.values.begin(), texels.values.end());
-    } else {
-      level->floats = std::move(texels.values);
-    }
-    if (last) return;
-    texels = std::move(coarser);
+    level->width = static_cast<int>(width);
+    level->height = static_cast<int>(height);
+    if (width > 1 || height > 1) continue;
+    level->floats.assign(channels_, 0.0f);  // for lookups that are only asked which level they need
+    break;
   }
+  first_ = level_count();
+}
+
+MipMap::MipMap(PictureRows& rows, const MipMapOptions& options, int first) : MipMap(rows.info, options) {
+  Builder(*this, rows.info, options, first).read(rows);
+}
+
+MipMap::MipMap(const Image& image, const MipMapOptions& options)
+    : MipMap(static_cast<const ImageInfo&>(image), options) {
+  ArrayRows rows(image);
+  Builder(*this, image, options, 0).read(rows);
+}
+
+MipMap::MipMap(const ByteImage& image, const MipMapOptions& options)
+    : MipMap(static_cast<const ImageInfo&>(image), options) {
+  ArrayRows rows(image);
+  Builder(*this, image, options, 0).read(rows);
 }
 
 MipMap::MipMap(const MipMap& whole, int first) : MipMap(whole) {
-  first_ = first;
-  for (int i = 0; i < first; ++i) {
+  for (int i = first_; i < first; ++i) {
     const auto gone = std::make_shared<Level>();
     gone->width = width(i);
     gone->height = height(i);
     levels_[i] = gone;
   }
+  first_ = first;
 }
 
-size_t MipMap::bytes_to_build(const ImageInfo& image, const MipMapOptions& options) {
-  const auto area = [](auto w, auto h) { return static_cast<size_t>(w) * static_cast<size_t>(h); };
-  const size_t pixels = area(image.width, image.height), channels = options.single || is_grey(image) ? 1 : 3;
-  const size_t read = pixels * image.channels * (image.format == SampleFormat::UInt8 ? 1 : sizeof(float));
-  // The file's bytes and level 0; later level 0, two levels in floats, and the halves of one.
-  if (keeps_bytes(image, options)) return std::max(read + channels * pixels, 3 * channels * pixels);
-  // The picture and its texels; later those and what they are resampled to, or the next level and the halves of both.
-  const size_t texels = area(std::bit_ceil(unsigned(image.width)), std::bit_ceil(unsigned(image.height)));
-  return sizeof(float) * channels * std::max(pixels, 2 * texels) + read;
+size_t MipMap::bytes_of(int level) const {
+  const size_t n = static_cast<size_t>(width(level)) * height(level) * channels_;
+  switch (storage(level)) {
+    case Storage::Bytes: return n;
+    case Storage::Halves: return n * sizeof(Imath::half);
+    default: return n * sizeof(float);
+  }
+}
+
+size_t MipMap::bytes_to_build(const PictureRows& rows, const MipMapOptions& options, int first) {
+  const MipMap outline(rows.info, options);
+  size_t sum = rows.memory() + Builder::bytes_to_read(rows.info, options);
+  for (int i = first; i < outline.level_count(); ++i) sum += outline.bytes_of(i);
+  return sum;
 }
 
 size_t MipMap::bytes() const {
   size_t sum = 0;
-  for (const auto& level : levels_)
-    sum += level->bytes.size() + level->halves.size() * sizeof(Imath::half) + level->floats.size() * sizeof(float);
+  for (int i = first_; i < level_count(); ++i) sum += bytes_of(i);
   return sum;
 }
 

@@ -20,24 +20,24 @@
 #include "core/image/image.h"
 #include "core/image/page_allocator.h"
 #include "core/image/texels.h"
+#include "core/image/texture_kinds.h"
 
 namespace whit {
+
+class PictureRows;
 
 /// What a MIP map is made of besides the picture.
 struct MipMapOptions {
   bool single = false;  ///< One channel, the luminance; otherwise RGB (a grey picture still takes one).
   WrapMode wrap = WrapMode::Repeat;
-  bool gamma = false;  ///< Decode sRGB.
-  float scale = 1;     ///< Times every value, after decoding.
-  bool flip = true;    ///< t = 0 is the bottom row (imagemap); false: the top row (lights).
+  bool gamma = false;   ///< Decode sRGB.
+  float scale = 1;      ///< Times every value, after decoding.
+  bool flip = true;     ///< t = 0 is the bottom row (imagemap); false: the top row (lights).
+  bool floats = false;  ///< Keep floats where halves would be enough for most pictures.
 };
 
-/// What a lookup takes of the texels around its point.
-enum class TextureFilter : uint8_t {
-  Ewa,        ///< Their mean over an ellipse, by weights that fall off from its middle.
-  Trilinear,  ///< Their mean over a square, between four texels of two levels.
-  Point       ///< The nearest of the finest level, whatever the footprint.
-};
+/// A picture has numbers that halves cannot hold; MipMapOptions::floats can.
+struct ExceedsHalves {};
 
 /// How to filter.
 struct MipFilter {
@@ -65,18 +65,24 @@ struct LookupPoints {
 /// 16-bit and half pictures are half (relative error below 0.05 %); float pictures are float.
 class MipMap {
  public:
-  MipMap(Image image, const MipMapOptions& options);
-  MipMap(ByteImage image, const MipMapOptions& options);
+  /// Has no level at all, but its lookups tell which one they need.
+  MipMap(const ImageInfo& image, const MipMapOptions& options);
+
+  /// Reads a picture to its end, and keeps the levels from `first` on. May throw ExceedsHalves, and what reading throws.
+  MipMap(PictureRows& rows, const MipMapOptions& options, int first = 0);
+  MipMap(const Image& image, const MipMapOptions& options);
+  MipMap(const ByteImage& image, const MipMapOptions& options);
 
   /// `whole` without the levels finer than `first`; the others are shared with it.
   MipMap(const MipMap& whole, int first);
 
-  /// At most this many bytes are alive at once while a picture is read and its pyramid built, both included.
-  static size_t bytes_to_build(const ImageInfo& image, const MipMapOptions& options);
+  /// At most this many bytes are alive at once while a picture is read and its levels from `first` on are built, both
+  /// included.
+  static size_t bytes_to_build(const PictureRows& rows, const MipMapOptions& options, int first);
 
   int channels() const { return channels_; }  ///< 1 or 3.
   int level_count() const { return static_cast<int>(levels_.size()); }
-  int first_level() const { return first_; }                          ///< The finest level it has.
+  int first_level() const { return first_; }  ///< The finest level it has, level_count() when it has none.
   int width(int level = 0) const { return levels_[level]->width; }    ///< A power of two.
   int height(int level = 0) const { return levels_[level]->height; }  ///< A power of two.
   size_t bytes() const;                                               ///< Memory the texels take.
@@ -95,8 +101,9 @@ class MipMap {
     Storage storage = Storage::Floats;
     std::vector<uint8_t, PageAllocator<uint8_t>> bytes;           // decoded by byte_values_
     std::vector<Imath::half, PageAllocator<Imath::half>> halves;  // times gain_
-    std::vector<float> floats;
+    std::vector<float, PageAllocator<float>> floats;
   };
+  class Builder;
   template <int C>
   using Value = std::array<float, C>;
   static constexpr int kLanes = 64;  ///< So many lookups are prepared at a time.
@@ -107,8 +114,8 @@ class MipMap {
   template <int C, WrapMode W>
   class Sampler;
 
-  void add_byte_levels(ByteImage image, const MipMapOptions& options);
-  void add_levels(Texels texels, bool as_half, float scale);
+  Storage storage(int level) const { return level == 0 ? finest_storage_ : coarse_storage_; }
+  size_t bytes_of(int level) const;
   template <int C, class F>
   int with_sampler(const F& f) const;
   template <class S>
@@ -118,6 +125,7 @@ class MipMap {
   int first_ = 0;
   int channels_ = 0;
   WrapMode wrap_ = WrapMode::Repeat;
+  Storage finest_storage_ = Storage::Floats, coarse_storage_ = Storage::Floats;
   float gain_ = 1;
   std::array<float, 256> byte_values_{};
 };

@@ -176,7 +176,8 @@ class MipMap::Sampler {
   static constexpr WrapMode kAlongS = wrap_along_s(W), kAlongT = wrap_along_t(W);
 
  public:
-  explicit Sampler(const MipMap& map) : map_(map), last_(map.level_count() - 1), finest_(last_) {}
+  explicit Sampler(const MipMap& map)
+      : map_(map), last_(map.level_count() - 1), held_(std::min(map.first_, last_)), finest_(last_) {}
 
   // The finest level asked for so far.
   int finest() const { return finest_; }
@@ -255,7 +256,7 @@ class MipMap::Sampler {
   // A level the pyramid does not have is noted, and the finest that it has taken in its place.
   const Level& use(int level) {
     finest_ = std::min(finest_, level);
-    return *map_.levels_[std::max(level, map_.first_)];
+    return *map_.levels_[std::max(level, held_)];
   }
 
   static void add(Value<C>& sum, float weight, const Value<C>& v) {
@@ -348,7 +349,7 @@ class MipMap::Sampler {
   }
 
   const MipMap& map_;
-  const int last_;
+  const int last_, held_;  // the coarsest level; the finest that is there
   int finest_;
 };
 

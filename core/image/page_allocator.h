@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 
 namespace whit {
 
@@ -29,6 +30,16 @@ struct PageAllocator {
     if (n * sizeof(T) < kLeast) ::operator delete(p);
     else munmap(p, n * sizeof(T));
   }
+
+  /// Numbers of a vector that grows begin as they are, since all are written before they are read: a page that nobody has
+  /// written to takes no memory.
+  template <class U>
+  void construct(U*) {}
+  template <class U, class... Args>
+  void construct(U* p, Args&&... args) {
+    ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+  }
+
   bool operator==(const PageAllocator&) const { return true; }
 };
 

@@ -36,6 +36,12 @@ bool is_tga(const Bytes& b) {
   return b[1] <= 1 && one_of(kinds, b[2]) && (b[12] | b[13]) != 0 && (b[14] | b[15]) != 0 && one_of(bits, b[16]);
 }
 
+// Grey of 8 bits or colours of 24 or 32, left to right, and not interleaved.
+bool is_common_tga(const Bytes& b) {
+  const bool grey = (b[2] & 7) == 3 && b[16] == 8, colour = (b[2] & 7) == 2 && (b[16] == 24 || b[16] == 32);
+  return is_tga(b) && b[1] == 0 && (grey || colour) && (b[17] & 0xd0) == 0;
+}
+
 bool ends_with(const std::string& path, std::string_view extension) {
   return path.size() >= extension.size() &&
          std::equal(extension.rbegin(), extension.rend(), path.rbegin(),
@@ -59,6 +65,11 @@ bool begins_like_a_picture(const std::string& path) {
   return is_png(b) || is_jpg(b) || is_exr(b) || (ends_with(path, ".tga") && is_tga(b));
 }
 
-bool begins_like_a_png(const std::string& path) { return is_png(beginning(path)); }
+PictureKind kind_of_picture(const std::string& path) {
+  const Bytes b = beginning(path);
+  if (is_png(b)) return PictureKind::Png;
+  if (is_jpg(b)) return PictureKind::Jpeg;
+  return ends_with(path, ".tga") && is_common_tga(b) ? PictureKind::Tga : PictureKind::Other;
+}
 
 }  // namespace whit

@@ -1,6 +1,7 @@
 // Whether a file is a picture, by a look at its first bytes.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 namespace whit {
@@ -10,7 +11,10 @@ namespace whit {
 /// and the libraries that know all kinds take longer to load than many a scene.
 bool begins_like_a_picture(const std::string& path);
 
-/// True when the file begins as a PNG does.
-bool begins_like_a_png(const std::string& path);
+/// Kinds that have a reader of their own; of TGA only the common ones, of JPEG all.
+enum class PictureKind : uint8_t { Png, Jpeg, Tga, Other };
+
+/// What the file begins as.
+PictureKind kind_of_picture(const std::string& path);
 
 }  // namespace whit

@@ -1,5 +1,6 @@
 #include "core/image/texels.h"
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -9,20 +10,14 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <utility>
 
 #include "core/base/vec.h"
 
 namespace whit {
 namespace {
 
-constexpr int kTaps = 4;
 constexpr float kRadius = 2;
-
-// The four texels that make a new one, their wrapped indices and weights; index -1 contributes nothing.
-struct Taps {
-  std::array<int, kTaps> index;
-  std::array<float, kTaps> weight;
-};
 
 // sinc(x) windowed by sinc(x / tau), x in units of the filter's radius.
 float lanczos(float x, float tau) {
@@ -39,61 +34,12 @@ int wrap_index(int i, int n, WrapMode wrap) {
   return i >= 0 && i < n ? i : -1;
 }
 
-std::vector<Taps> resample_taps(int old_size, int new_size, WrapMode wrap) {
-  std::vector<Taps> taps(static_cast<size_t>(new_size));
-  for (int i = 0; i < new_size; ++i) {
-    const float center = (static_cast<float>(i) + 0.5f) * static_cast<float>(old_size) / static_cast<float>(new_size);
-    const int first = static_cast<int>(std::floor(center - kRadius + 0.5f));
-    Taps& t = taps[static_cast<size_t>(i)];
-    float sum = 0;
-    for (int j = 0; j < kTaps; ++j) {
-      t.index[j] = wrap_index(first + j, old_size, wrap);
-      t.weight[j] = lanczos((static_cast<float>(first + j) + 0.5f - center) / kRadius, 2);
-      sum += t.weight[j];
-    }
-    for (float& w : t.weight) w *= 1 / sum;  // normalised before wrapping: black borders darken
-  }
-  return taps;
-}
-
-// Each line of `count` texels, `step` floats apart, becomes a line of taps.size() texels.
-void resample_line(const float* in, size_t in_step, float* out, size_t out_step, int channels,
-                   const std::vector<Taps>& taps) {
-  for (size_t i = 0; i < taps.size(); ++i)
-    for (int c = 0; c < channels; ++c) {
-      float sum = 0;
-      for (int j = 0; j < kTaps; ++j)
-        if (taps[i].index[j] >= 0) sum += taps[i].weight[j] * in[static_cast<size_t>(taps[i].index[j]) * in_step + c];
-      out[i * out_step + c] = sum;
-    }
-}
-
-// The channels that make the texels, each number taken through `value`; where they are weighed into a luminance, which
-// is of undecoded numbers, through `raw` before that and `decode` after.
-template <class Number, class Value, class Raw, class Decode>
-Texels select(const PixelArray<Number>& image, bool single, bool flip, const Value& value, const Raw& raw,
-              const Decode& decode) {
-  const std::vector<int> rgb = image.rgb_channels();
-  const bool grey = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-  Texels out{image.width, image.height, single || grey ? 1 : 3, {}};
-  out.values.resize(static_cast<size_t>(out.width) * out.height * out.channels);
-  tbb::parallel_for(0, image.height, [&](int y) {
-    float* texel = out.values.data() + static_cast<size_t>(y) * out.width * out.channels;
-    for (int x = 0; x < image.width; ++x) {
-      const Number* p = image.pixel(x, flip ? image.height - 1 - y : y);
-      if (grey) *texel++ = value(p[rgb[0]]);
-      else if (single) *texel++ = decode(luminance(RGB(raw(p[rgb[0]]), raw(p[rgb[1]]), raw(p[rgb[2]]))));
-      else
-        for (int c : rgb) *texel++ = value(p[c]);
-    }
-  });
-  return out;
-}
-
 std::string lower_case(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
 }
+
+constexpr size_t area(int width, int height) { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 
 float byte_value(uint8_t v) { return static_cast<float>(v) / 255; }
 
@@ -124,44 +70,132 @@ bool default_gamma(const std::string& path, const ImageInfo& info) {
   return info.format == SampleFormat::UInt8;
 }
 
-Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip) {
-  const auto decode = [=](float v) { return scale * (gamma ? srgb_decode(v) : v); };
-  return select(
-      image, single, flip, decode, [](float v) { return v; }, decode);
+TexelRows::TexelRows(const ImageInfo& image, bool single, bool gamma, float scale)
+    : width_(image.width), pixel_(image.channels), gamma_(gamma), scale_(scale) {
+  const std::vector<int> rgb = image.rgb_channels();
+  std::copy_n(rgb.begin(), 3, rgb_.begin());
+  grey_ = rgb[0] == rgb[1] && rgb[1] == rgb[2];
+  channels_ = single || grey_ ? 1 : 3;
+  of_byte_ = byte_values(gamma);
+  for (float& v : of_byte_) v *= scale;
+  for (int i = 0; i < 256; ++i) of_grey_[i] = decode(luminance(RGB(byte_value(static_cast<uint8_t>(i)))));
 }
 
-Texels make_texels(const ByteImage& image, bool single, bool gamma, float scale, bool flip) {
-  std::array<float, 256> values = byte_values(gamma);
-  for (float& v : values) v *= scale;
-  return select(
-      image, single, flip, [&](uint8_t v) { return values[v]; }, byte_value,
-      [=](float v) { return scale * (gamma ? srgb_decode(v) : v); });
+template <class Number, class Out, class Value, class Luminance>
+void TexelRows::select(const Number* p, Out* to, const Value& value, const Luminance& luminance_of) const {
+  const auto [r, g, b] = rgb_;
+  if (grey_) {
+    for (int x = 0; x < width_; ++x) to[x] = value(p[x * pixel_ + r]);
+  } else if (channels_ == 1) {
+    for (int x = 0; x < width_; ++x, p += pixel_) to[x] = luminance_of(p[r], p[g], p[b]);
+  } else if (pixel_ == 3 && r == 0 && g == 1 && b == 2) {
+    for (int i = 0; i < 3 * width_; ++i) to[i] = value(p[i]);
+  } else {
+    for (int x = 0; x < width_; ++x, p += pixel_, to += 3)
+      to[0] = value(p[r]), to[1] = value(p[g]), to[2] = value(p[b]);
+  }
+}
+
+// The luminance is of undecoded numbers. Most pictures for numbers are grey, whatever they are stored as.
+void TexelRows::convert(const uint8_t* pixels, float* texels) const {
+  select(
+      pixels, texels, [this](uint8_t v) { return of_byte_[v]; },
+      [this](uint8_t r, uint8_t g, uint8_t b) {
+        return r == g && g == b ? of_grey_[r] : decode(luminance(RGB(byte_value(r), byte_value(g), byte_value(b))));
+      });
+}
+
+void TexelRows::convert(const float* pixels, float* texels) const {
+  select(
+      pixels, texels, [this](float v) { return decode(v); },
+      [this](float r, float g, float b) { return decode(luminance(RGB(r, g, b))); });
+}
+
+void TexelRows::pick(const uint8_t* pixels, uint8_t* numbers) const {
+  const auto same = [](uint8_t v) { return v; };
+  select(pixels, numbers, same, [](uint8_t r, uint8_t, uint8_t) { return r; });
+}
+
+Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip) {
+  const TexelRows rows(image, single, gamma, scale);
+  Texels out{image.width, image.height, rows.channels(), {}};
+  const size_t row = area(out.width, out.channels);
+  out.values.resize(row * image.height);
+  tbb::parallel_for(0, image.height, [&](int t) {
+    rows.convert(image.pixel(0, flip ? image.height - 1 - t : t), out.values.data() + row * t);
+  });
+  return out;
+}
+
+EnlargedRows::EnlargedRows(int width, int height, int channels, WrapMode wrap, std::function<void(int, float*)> row)
+    : channels_(channels), row_(std::move(row)), narrow_(area(width, channels)) {
+  const auto enlarged = [](int n) { return static_cast<int>(std::bit_ceil(static_cast<unsigned>(n))); };
+  s_taps_ = taps(width, enlarged(width), wrap_along_s(wrap));
+  t_taps_ = taps(height, enlarged(height), wrap_along_t(wrap));
+  for (std::vector<float>& w : wide_) w.resize(s_taps_.size() * channels);
+}
+
+std::vector<EnlargedRows::Taps> EnlargedRows::taps(int old_size, int new_size, WrapMode wrap) {
+  std::vector<Taps> taps(static_cast<size_t>(new_size));
+  for (int i = 0; i < new_size; ++i) {
+    const float center = (static_cast<float>(i) + 0.5f) * static_cast<float>(old_size) / static_cast<float>(new_size);
+    Taps& t = taps[static_cast<size_t>(i)];
+    t.first = static_cast<int>(std::floor(center - kRadius + 0.5f));
+    float sum = 0;
+    for (int j = 0; j < kTaps; ++j) {
+      t.index[j] = wrap_index(t.first + j, old_size, wrap);
+      t.weight[j] = lanczos((static_cast<float>(t.first + j) + 0.5f - center) / kRadius, 2);
+      sum += t.weight[j];
+    }
+    for (float& w : t.weight) w *= 1 / sum;  // normalised before wrapping: black borders darken
+  }
+  return taps;
+}
+
+void EnlargedRows::widen(const float* from, float* to) const {
+  for (const Taps& t : s_taps_)
+    for (int c = 0; c < channels_; ++c) {
+      float sum = 0;
+      for (int j = 0; j < kTaps; ++j)
+        if (t.index[j] >= 0) sum += t.weight[j] * from[t.index[j] * channels_ + c];
+      *to++ = sum;
+    }
+}
+
+const float* EnlargedRows::wide_row(const Taps& taps, int j) {
+  const size_t place = static_cast<size_t>(taps.first + j) % kTaps;
+  if (std::exchange(number_[place], taps.index[j]) != taps.index[j]) {
+    row_(taps.index[j], narrow_.data());
+    widen(narrow_.data(), wide_[place].data());
+  }
+  return wide_[place].data();
+}
+
+void EnlargedRows::make(int t, float* to) {
+  const size_t n = s_taps_.size() * channels_;
+  std::fill_n(to, n, 0.0f);
+  const Taps& taps = t_taps_[static_cast<size_t>(t)];
+  for (int j = 0; j < kTaps; ++j) {
+    if (taps.index[j] < 0) continue;
+    const float* const from = wide_row(taps, j);
+    const float weight = taps.weight[j];
+    for (size_t i = 0; i < n; ++i) to[i] += weight * from[i];
+  }
+  for (size_t i = 0; i < n; ++i) to[i] = std::max(to[i], 0.0f);
 }
 
 Texels resample_to_power_of_two(Texels in, WrapMode wrap) {
   if (is_power_of_two(in.width) && is_power_of_two(in.height)) return in;
-  const int c = in.channels;
-  Texels out{static_cast<int>(std::bit_ceil(static_cast<unsigned>(in.width))),
-             static_cast<int>(std::bit_ceil(static_cast<unsigned>(in.height))),
-             c,
-             {}};
-  const size_t in_row = static_cast<size_t>(in.width) * c, out_row = static_cast<size_t>(out.width) * c;
-
-  std::vector<float> wide(out_row * static_cast<size_t>(in.height));
-  const std::vector<Taps> s_taps = resample_taps(in.width, out.width, wrap_along_s(wrap));
-  tbb::parallel_for(0, in.height, [&](int t) {
-    resample_line(in.values.data() + in_row * t, c, wide.data() + out_row * t, c, c, s_taps);
-  });
-  in.values = {};
-
-  out.values.resize(out_row * static_cast<size_t>(out.height));
-  const std::vector<Taps> t_taps = resample_taps(in.height, out.height, wrap_along_t(wrap));
-  tbb::parallel_for(0, out.width, [&](int s) {
-    resample_line(wide.data() + static_cast<size_t>(s) * c, out_row, out.values.data() + static_cast<size_t>(s) * c,
-                  out_row, c, t_taps);
-  });
-  tbb::parallel_for(size_t{0}, static_cast<size_t>(out.height), [&](size_t t) {
-    for (size_t i = t * out_row; i < (t + 1) * out_row; ++i) out.values[i] = std::max(out.values[i], 0.0f);
+  const size_t in_row = area(in.width, in.channels);
+  const auto row = [&](int t, float* to) { std::copy_n(in.values.data() + in_row * t, in_row, to); };
+  const EnlargedRows plan(in.width, in.height, in.channels, wrap, row);
+  Texels out{plan.width(), plan.height(), in.channels, {}};
+  const size_t out_row = area(out.width, out.channels);
+  out.values.resize(out_row * out.height);
+  constexpr int kRowsAtATime = 64;
+  tbb::parallel_for(tbb::blocked_range<int>(0, out.height, kRowsAtATime), [&](const tbb::blocked_range<int>& range) {
+    EnlargedRows rows = plan;
+    for (int t = range.begin(); t < range.end(); ++t) rows.make(t, out.values.data() + out_row * t);
   });
   return out;
 }

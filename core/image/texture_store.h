@@ -2,24 +2,16 @@
 #pragma once
 
 #include <array>
-#include <atomic>
-#include <condition_variable>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <tuple>
-#include <vector>
 
 #include "core/base/diagnostics.h"
-#include "core/image/mipmap.h"
+#include "core/image/texture_kinds.h"
 
 namespace whit {
-
-enum class TextureKind : uint8_t { Float, Rgb };
 
 /// Everything that makes an image texture; two equal specs are one texture.
 struct TextureSpec {
@@ -36,13 +28,18 @@ struct TextureSpec {
 /// What happened so far; memory in bytes.
 struct TextureStatistics {
   size_t resident_bytes = 0, peak_bytes = 0;  ///< Of texels, and of what is being decoded.
+  int64_t files = 0;                          ///< Of which anything was decoded.
   int64_t decodes = 0;
-  int64_t trims = 0;      ///< Times that levels nobody had looked up were given up.
-  int64_t evictions = 0;  ///< Times that all of a texture was.
-  int64_t lookups = 0;    ///< Points looked up.
+  int64_t decoded_bytes = 0;  ///< Of the levels that decoding kept, all decodes together.
+  double decode_seconds = 0;  ///< Processor time of decoding, from opening a file to its levels.
+  int64_t trims = 0;          ///< Times that levels nobody had looked up were given up.
+  int64_t evictions = 0;      ///< Times that all of a texture was.
+  int64_t lookups = 0;        ///< Points looked up.
 };
 
-class TextureStore;
+class MipMap;
+class TextureMemory;
+class TextureSource;
 
 /// One image texture: a handle that a TextureStore made and owns. Lookups may come from any thread; results
 /// depend on their own point only, to the bit. Linear Rec.709 values, unless the file holds something else.
@@ -69,15 +66,14 @@ class ImageTexture {
 
  private:
   friend class TextureStore;
-  struct Source;
-  ImageTexture(TextureStore& store, Source& source, TextureSpec spec);
+  ImageTexture(TextureMemory& memory, TextureSource& source, TextureSpec spec);
   template <class Look>
   bool with_pyramid(int n, const Look& look) const;
   template <class Look>
   void look_up_rgb(int n, const std::array<float*, 3>& out, const Look& look) const;
 
-  TextureStore& store_;
-  Source& source_;
+  TextureMemory& memory_;
+  TextureSource& source_;
   TextureSpec spec_;
 };
 
@@ -106,38 +102,15 @@ class TextureStore {
   void read_all();
 
   /// True once a texture could not be decoded. Cheap, for a render to ask now and then.
-  bool failed() const { return failed_.load(std::memory_order_relaxed); }
+  bool failed() const;
 
   /// Why textures could not be decoded, one each naming the file; empty when all is well.
   Diagnostics errors() const;
 
  private:
-  friend class ImageTexture;
-  using SourceKey = std::tuple<std::string, TextureKind, WrapMode, std::optional<bool>, float, bool>;
-  using TextureKey = std::tuple<SourceKey, TextureFilter, float>;
-  struct Memory;
-  class Workspace;
-
-  std::shared_ptr<const MipMap> resident(ImageTexture::Source& source, int level);
-  void decode(ImageTexture::Source& source);
-  template <class Picture>
-  std::shared_ptr<const MipMap> keep(Result<Picture> image, const MipMapOptions& options, std::string& error,
-                                     Workspace& workspace);
-  std::shared_ptr<const MipMap> account(std::unique_ptr<const MipMap> map);
-  bool make_room(size_t wanted, const ImageTexture::Source& wanting);
-  void trim(ImageTexture::Source& source, int spare);
-
-  mutable std::mutex mutex_;  // guards the maps' structure, not the sources
-  std::map<SourceKey, std::unique_ptr<ImageTexture::Source>> sources_;
-  std::map<TextureKey, std::unique_ptr<ImageTexture>> textures_;
-  std::shared_ptr<Memory> memory_;
-  std::atomic<size_t> limit_{kDefaultMemory};
-  std::atomic<bool> failed_{false};
-  std::atomic<int64_t> decodes_{0}, trims_{0}, evictions_{0};
-  std::atomic<int64_t> clock_{0};  // counts changes of the texture in use
-  std::mutex workspace_mutex_;     // guards workspaces_: how many threads are decoding
-  std::condition_variable workspace_done_;
-  int workspaces_ = 0;
+  struct Textures;
+  std::unique_ptr<TextureMemory> memory_;
+  std::unique_ptr<Textures> textures_;
 };
 
 }  // namespace whit

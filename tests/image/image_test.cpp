@@ -120,20 +120,6 @@ TEST(ReadImage, jpeg_tiff_and_hdr_are_read) {
   }
 }
 
-TEST(ReadImage, bytes_are_the_files_own) {
-  std::vector<unsigned char> all(256 * 4);
-  for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<unsigned char>(i % 4 == 3 ? i / 8 : i / 4);
-  const std::string path = write_with_oiio("bytes.png", OIIO::ImageSpec(256, 1, 4, OIIO::TypeDesc::UINT8), all);
-  const auto bytes = read_byte_image(path);
-  ASSERT_TRUE(bytes.ok()) << bytes.error;
-  const auto floats = read_image(path);
-  ASSERT_EQ(bytes.value.pixels.size(), all.size());
-  // Where alpha is 0 the writer has lost the colour; the readers must agree there too.
-  for (size_t i = 0; i < all.size(); ++i)
-    EXPECT_EQ(static_cast<float>(bytes.value.pixels[i]) / 255, floats.value.pixels[i]) << i;
-  EXPECT_EQ(bytes.value.pixels.back(), 127);
-}
-
 TEST(ReadImage, errors_name_the_file_and_the_reason) {
   const auto expect = [](const std::string& path, const std::string& reason) {
     for (const std::string& error : {read_image(path).error, probe_image(path).error}) {
@@ -201,6 +187,23 @@ std::string png_file(const std::string& name, uint8_t bits, uint8_t type, const 
   return temp(name);
 }
 
+Image read_by_openimageio(const std::string& path) {
+  const auto rows = oiio().open(path);
+  Image image;
+  static_cast<ImageInfo&>(image) = rows->info;
+  const size_t row = static_cast<size_t>(image.width) * static_cast<size_t>(image.channels);
+  for (int y = 0; y < image.height; ++y) {
+    if (image.format == SampleFormat::UInt8) {
+      const uint8_t* const bytes = rows->next_bytes();
+      for (size_t i = 0; i < row; ++i) image.pixels.push_back(static_cast<float>(bytes[i]) / 255);
+    } else {
+      const float* const floats = rows->next_floats();
+      image.pixels.insert(image.pixels.end(), floats, floats + row);
+    }
+  }
+  return image;
+}
+
 TEST(Png, EveryKindIsReadAsOpenImageIOReadsIt) {
   // Two pixels in a row behind the filter's byte 0; numbers of less than 8 bits are packed from the left.
   const auto bytes = [](std::initializer_list<int> list) { return std::string(list.begin(), list.end()); };
@@ -225,13 +228,12 @@ TEST(Png, EveryKindIsReadAsOpenImageIOReadsIt) {
     const std::string what = std::to_string(c.bits) + " bits, type " + std::to_string(c.type);
     const auto ours = read_image(path);
     ASSERT_TRUE(ours.ok()) << what << ours.error;
-    const Image theirs = oiio().reader.read(path);
+    const Image theirs = read_by_openimageio(path);
     EXPECT_EQ(ours.value.pixels, c.pixels) << what;
     EXPECT_EQ(theirs.pixels, c.pixels) << what;
     EXPECT_EQ(ours.value.channel_names, theirs.channel_names) << what;
     EXPECT_EQ(ours.value.format, theirs.format) << what;
     EXPECT_EQ(ours.value.full_width, 2) << what;
-    if (c.bits <= 8) { EXPECT_EQ(read_byte_image(path).value.pixels, oiio().reader.read_bytes(path).pixels) << what; }
   }
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <random>
 
+#include "core/image/picture_rows.h"
+
 namespace whit {
 namespace {
 
@@ -277,16 +279,86 @@ TEST(MipMap, compact_storage_stays_within_a_thousandth) {
       }
 }
 
+// A picture that comes row by row, in either order.
+class Rows : public PictureRows {
+ public:
+  explicit Rows(const Image& image, bool bottom_first_ = false) : image_(image), bytes_(bytes_of(image)) {
+    info = image;
+    bottom_first = bottom_first_;
+  }
+  const uint8_t* next_bytes() override { return bytes_.pixel(0, place()); }
+  const float* next_floats() override { return image_.pixel(0, place()); }
+  size_t memory() const override { return 1000; }
+
+ private:
+  int place() { return bottom_first ? image_.height - 1 - y_++ : y_++; }
+  const Image image_;
+  const ByteImage bytes_;
+  int y_ = 0;
+};
+
 TEST(MipMap, building_takes_no_more_than_announced) {
-  // The announcement covers the picture as read and what there is at the end, of which the larger part is alive at once
-  // for floats: 3 channels of 4 bytes and 3 x 4 x 4/3 per pixel; bytes: 3 and 3 x (1 + 2/3).
-  for (const int side : {64, 50}) {
-    const Image floats = picture(side, side, 3);
-    const ByteImage bytes = bytes_of(floats);
-    const size_t pixels = size_t(side) * size_t(side);
-    EXPECT_GE(MipMap::bytes_to_build(floats, {}), 12 * pixels + MipMap(floats, {}).bytes());
-    EXPECT_GE(MipMap::bytes_to_build(bytes, {}), 3 * pixels + MipMap(bytes, {}).bytes());
-    EXPECT_LT(MipMap::bytes_to_build(bytes, {}), MipMap::bytes_to_build(floats, {}));
+  // What the reader says, the levels from `first` on, and rows of the picture: with sides that are powers of two a few, of
+  // others all, as the file has them.
+  for (const int side : {64, 50})
+    for (const SampleFormat format : {SampleFormat::Float, SampleFormat::UInt8})
+      for (const int first : {0, 2}) {
+        Rows rows(picture(side, side, 3, format));
+        const size_t announced = MipMap::bytes_to_build(rows, {}, first),
+                     number = format == SampleFormat::Float ? 4 : 1;
+        const size_t levels = MipMap(rows, {}, first).bytes(), some = 4 * 3 * 64 * sizeof(float);
+        const size_t all = side == 50 ? 50 * 50 * 3 * number : 0;
+        EXPECT_GE(announced, 1000 + levels + some + all);
+        EXPECT_LE(announced, 1000 + levels + 4 * some + all);
+      }
+}
+
+TEST(MipMap, levels_from_the_first_on_are_those_of_the_whole) {
+  const Points points(300);
+  for (const auto& [width, height] : {std::pair{32, 32}, {64, 8}, {30, 20}, {1, 16}, {16, 1}})
+    for (const SampleFormat format :
+         {SampleFormat::UInt8, SampleFormat::UInt16, SampleFormat::Half, SampleFormat::Float})
+      for (const bool flip : {false, true})
+        for (const WrapMode wrap : kWraps) {
+          const Image image = picture(width, height, 3, format);
+          const MipMapOptions options{.wrap = wrap, .gamma = true, .scale = 2.5f, .flip = flip};
+          Rows all_rows(image);
+          const MipMap whole(all_rows, options);
+          const MipMap outline(static_cast<const ImageInfo&>(image), options);
+          EXPECT_EQ(outline.first_level(), outline.level_count());
+          for (const int first : {1, 3}) {
+            for (const bool bottom_first : {false, true}) {
+              Rows rows(image, bottom_first);
+              const MipMap part(rows, options, first), rest(whole, first);
+              ASSERT_EQ(part.first_level(), first);
+              EXPECT_EQ(part.bytes(), rest.bytes());
+              for (size_t i = 0; i < points.s.size(); ++i) {
+                float a[3], b[3], c[3];
+                float *const of_part[] = {&a[0], &a[1], &a[2]}, *const of_rest[] = {&b[0], &b[1], &b[2]};
+                float* const of_outline[] = {&c[0], &c[1], &c[2]};
+                const int level = rest.lookup(points.view(i, 1), {}, of_rest);
+                ASSERT_EQ(part.lookup(points.view(i, 1), {}, of_part), level);
+                ASSERT_EQ(outline.lookup(points.view(i, 1), {}, of_outline), level);
+                for (int k = 0; k < 3 && level >= first; ++k)
+                  ASSERT_EQ(a[k], b[k]) << width << 'x' << height << ' ' << i;
+              }
+            }
+          }
+        }
+}
+
+TEST(MipMap, what_halves_cannot_hold_is_said_and_floats_hold_it) {
+  for (const float bad : {1e5f, std::numeric_limits<float>::infinity()}) {
+    Image image = picture(8, 8, 3, SampleFormat::Half);
+    image.pixels[100] = bad;
+    Rows first(image), second(image);
+    EXPECT_THROW(MipMap(first, {}, 2), ExceedsHalves);
+    const MipMap map(second, {.scale = 2, .flip = false, .floats = true});
+    const float s[] = {(100 / 3 % 8 + 0.5f) / 8}, t[] = {(100 / 24 + 0.5f) / 8};
+    std::vector<float> r(1), g(1), b(1);
+    float* const out[3] = {r.data(), g.data(), b.data()};
+    map.lookup({1, s, t}, {TextureFilter::Point}, out);
+    EXPECT_EQ(g[0], 2 * bad);  // number 100 is a green one
   }
 }
 
@@ -312,7 +384,7 @@ TEST(MipMap, without_fine_levels_coarse_lookups_are_the_same_and_fine_ones_say_s
 }
 
 TEST(MipMap, a_scale_cannot_overflow_halves) {
-  const MipMap map(picture(4, 4, 1, SampleFormat::UInt8), {.scale = 1e9f});
+  const MipMap map(bytes_of(picture(4, 4, 1)), {.scale = 1e9f});
   const float s[] = {0.5f}, t[] = {0.5f}, d[] = {4.0f}, zero[] = {0};
   const float v = look(map, {1, s, t, d, zero, zero, d}, {})[0];
   EXPECT_GT(v, 1e8f);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "core/image/mipmap.h"
 #include "core/image/write.h"
 #include "tests/base/temp_folder.h"
 
@@ -93,11 +94,14 @@ TEST(TextureStore, many_threads_decode_once) {
   EXPECT_EQ(store.statistics().decodes, 1);
 }
 
+// A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 bytes. While it is made there are the picture in its
+// reader, its rows as they are handed out, at most 32, and 12 rows in the builder.
+constexpr size_t kPyramid = 16380, kReading = 12288 + 12288 + 12 * 32 * 12, kMaking = kPyramid + kReading;
+
 TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
-  // A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 = 16380 bytes. While it is made there are the
-  // picture, 12288, and twice the texels, 24576: beside these 36864, one pyramid fits in 60000, two do not.
+  // Beside a pyramid that is made, one other fits in 62000, two do not.
   TextureStore store;
-  store.set_memory_limit(60000);
+  store.set_memory_limit(62000);
   const ImageTexture* a = store.add(spec_of(constant_file("a", 32, 1)));
   const ImageTexture* b = store.add(spec_of(constant_file("b", 32, 2)));
   const ImageTexture* c = store.add(spec_of(constant_file("c", 32, 3)));
@@ -108,8 +112,8 @@ TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
   TextureStatistics s = store.statistics();
   EXPECT_EQ(s.decodes, 3);
   EXPECT_EQ(s.evictions, 1);
-  EXPECT_EQ(s.resident_bytes, 2u * 16380);
-  EXPECT_EQ(s.peak_bytes, 16380u + 36864u);
+  EXPECT_EQ(s.resident_bytes, 2 * kPyramid);
+  EXPECT_EQ(s.peak_bytes, kPyramid + kMaking);
   EXPECT_EQ(look(a), 1);
   EXPECT_EQ(store.statistics().decodes, 3);  // still there
   EXPECT_EQ(look(b), 2);
@@ -118,9 +122,10 @@ TEST(TextureStore, least_recently_used_go_when_memory_is_short) {
 
 TEST(TextureStore, what_nobody_looked_up_goes_first) {
   // As above, but the textures are seen from afar: a footprint of 1/4 is at level 5 - 2 = 3, 4 x 4 texels, and levels 3
-  // to 5 have (16 + 4 + 1) * 12 = 252 bytes. No texture is dropped, none decoded again, until someone looks closer.
+  // to 5 have (16 + 4 + 1) * 12 = 252 bytes, with the spare one 1020. In room for nine of these, twenty of those fit: no
+  // texture is dropped, none decoded again, until someone looks closer than at the spare level.
   TextureStore store;
-  store.set_memory_limit(60000);
+  store.set_memory_limit(kReading + 10 * 1020);
   std::vector<const ImageTexture*> textures;
   for (int i = 0; i < 20; ++i)
     textures.push_back(store.add(spec_of(constant_file(fmt::format("far{}", i), 32, float(i)))));
@@ -135,15 +140,19 @@ TEST(TextureStore, what_nobody_looked_up_goes_first) {
   TextureStatistics s = store.statistics();
   EXPECT_EQ(s.decodes, 20);
   EXPECT_EQ(s.evictions, 0);
-  EXPECT_GE(s.trims, 18);  // the two that came last were not in anybody's way
-  EXPECT_LE(s.peak_bytes, 60000u);
+  EXPECT_GE(s.trims, 10);
+  EXPECT_LE(s.peak_bytes, kReading + 10 * 1020);
+  EXPECT_EQ(s.decoded_bytes, 20 * 1020);
+  EXPECT_NEAR(look_at(textures[19], 2 * near), 19, 1e-5f);  // level 5 - 4 = 1
   EXPECT_NEAR(look_at(textures[3], near), 3, 1e-5f);
-  EXPECT_EQ(store.statistics().decodes, 21);
+  s = store.statistics();
+  EXPECT_EQ(s.decodes, 22);
+  EXPECT_EQ(s.files, 20);
+  EXPECT_GT(s.decode_seconds, 0);
 }
 
 TEST(TextureStore, threads_that_decode_share_the_cap) {
-  // Room for one at a time: 36864 while a pyramid is made, when each of the three other threads may be in a lookup of
-  // one that has been dropped, 16380. Without waiting it would be four times 36864.
+  // Room for one at a time, when each of the three other threads may be in a lookup of one that has been dropped.
   TextureStore store;
   store.set_memory_limit(40000);
   std::vector<const ImageTexture*> textures;
@@ -157,7 +166,7 @@ TEST(TextureStore, threads_that_decode_share_the_cap) {
     });
   for (std::thread& t : threads) t.join();
   EXPECT_EQ(wrong, 0);
-  EXPECT_LE(store.statistics().peak_bytes, 36864u + 3 * 16380u);
+  EXPECT_LE(store.statistics().peak_bytes, kMaking + 3 * kPyramid);
 }
 
 TEST(TextureStore, a_pyramid_in_use_survives_eviction) {
@@ -181,6 +190,23 @@ TEST(TextureStore, eviction_under_threads_changes_no_value) {
   tbb::parallel_for(0, 600, [&](int i) { wrong += look(textures[size_t(i * 7 % 6)]) != float(i * 7 % 6); });
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(store.statistics().evictions, 0);
+}
+
+TEST(TextureStore, only_levels_that_are_looked_at_are_kept_and_a_spare_one) {
+  // As above: level 3 with the spare one 1020 bytes, all 16380.
+  TextureStore store;
+  const ImageTexture* texture = store.add(spec_of(constant_file("levels", 32, 0.5f)));
+  const float st = 0.5f, zero = 0;
+  const auto look_at = [&](float d) {
+    float out = -1;
+    texture->lookup_float(1, &st, &st, &d, &zero, &zero, &d, &out);
+    EXPECT_NEAR(out, 0.5f, 1e-6f);
+    return store.statistics();
+  };
+  EXPECT_EQ(look_at(0.25f).resident_bytes, 1020u);
+  EXPECT_EQ(look_at(0.125f).decodes, 1);  // the spare level
+  EXPECT_EQ(look_at(0.0625f).resident_bytes, kPyramid);
+  EXPECT_EQ(look_at(0.01f).decodes, 2);
 }
 
 TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {

@@ -5,9 +5,7 @@
 
 namespace whit {
 
-ImageInfo oiio_probe(const std::string& path);
-Image oiio_read(const std::string& path);
-ByteImage oiio_read_bytes(const std::string& path);
+std::unique_ptr<PictureRows> oiio_open(const std::string& path);
 std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 
 }  // namespace whit

@@ -1,5 +1,4 @@
 // What the module hands out under a name that dlsym() can find.
 #include "core/image/oiio/functions.h"
 
-extern "C" __attribute__((visibility("default")))
-const whit::Oiio whit_oiio{{whit::oiio_probe, whit::oiio_read, whit::oiio_read_bytes}, whit::oiio_encode};
+extern "C" __attribute__((visibility("default"))) const whit::Oiio whit_oiio{whit::oiio_open, whit::oiio_encode};

@@ -2,17 +2,19 @@
 // Debian's OpenImageIO brings some 250 libraries along, and linking them takes longer than many a picture.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "core/image/decode.h"
 #include "core/image/encode.h"
+#include "core/image/picture_rows.h"
 
 namespace whit {
 
 /// The module's functions.
 struct Oiio {
-  PictureReader reader;
+  /// Opens a picture. Throws std::runtime_error with the reason, which does not name the file.
+  std::unique_ptr<PictureRows> (*open)(const std::string& path);
 
   /// The bytes of a file of that kind: "tga", "jpg", "jpeg", "tif" or "tiff". Throws std::runtime_error with
   /// the reason.

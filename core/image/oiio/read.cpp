@@ -4,21 +4,21 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <type_traits>
 
+#include "core/image/decode.h"
 #include "core/image/oiio/functions.h"
 
 namespace whit {
 namespace {
-
-using InputPtr = std::unique_ptr<OIIO::ImageInput>;
 
 SampleFormat sample_format(const OIIO::ImageSpec& spec) {
   SampleFormat most = SampleFormat::UInt8;
   for (int c = 0; c < spec.nchannels; ++c) {
     SampleFormat f = SampleFormat::Float;
     switch (spec.channelformat(c).basetype) {
-      case OIIO::TypeDesc::UINT8:
-      case OIIO::TypeDesc::INT8: f = SampleFormat::UInt8; break;
+      case OIIO::TypeDesc::UINT8: f = SampleFormat::UInt8; break;
+      case OIIO::TypeDesc::INT8:
       case OIIO::TypeDesc::UINT16:
       case OIIO::TypeDesc::INT16: f = SampleFormat::UInt16; break;
       case OIIO::TypeDesc::HALF: f = SampleFormat::Half; break;
@@ -51,53 +51,74 @@ std::string header_problem(const OIIO::ImageSpec& spec) {
   return spec.deep ? "deep pictures are not supported" : "";
 }
 
-// OpenImageIO multiplies by 1/255, which is an ulp off for some bytes; the quotient is what pbrt-v3 computes.
-void divide_exactly(const OIIO::ImageSpec& spec, std::vector<float>& pixels) {
-  const float most = spec.format == OIIO::TypeDesc::UINT8 ? 255 : spec.format == OIIO::TypeDesc::UINT16 ? 65535 : 0;
-  if (most == 0 || !spec.channelformats.empty()) return;
-  for (float& v : pixels) v = std::nearbyint(v * most) / most;
-}
+// Rows are asked for in strips: as many as a tile is high, or as OpenEXR and TIFF files are likely to pack together.
+class OiioRows : public PictureRows {
+ public:
+  explicit OiioRows(const std::string& path) {
+    OIIO::ImageSpec config;
+    config.attribute("oiio:UnassociatedAlpha", 1);  // pbrt ignores alpha: colour must not be multiplied by it
+    input_ = OIIO::ImageInput::open(path, &config);
+    if (!input_) throw std::runtime_error(OIIO::geterror());
+    const OIIO::ImageSpec& spec = input_->spec();
+    if (std::string problem = header_problem(spec); !problem.empty()) throw std::runtime_error(problem);
+    copy_header(spec, info);
+    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+    row_ = static_cast<size_t>(info.width) * info.channels;
+    strip_height_ = std::min(info.height, spec.tile_width > 0 ? spec.tile_height : 32);
+  }
 
-// Throws what is wrong with a file that cannot be read; the caller adds which one.
-InputPtr open_image(const std::string& path, ImageInfo& info) {
-  OIIO::ImageSpec config;
-  config.attribute("oiio:UnassociatedAlpha", 1);  // pbrt ignores alpha: colour must not be multiplied by it
-  InputPtr input = OIIO::ImageInput::open(path, &config);
-  if (!input) throw std::runtime_error(OIIO::geterror());
-  if (std::string problem = header_problem(input->spec()); !problem.empty()) throw std::runtime_error(problem);
-  copy_header(input->spec(), info);
-  if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
-  return input;
-}
+  const uint8_t* next_bytes() override {
+    if (bytes_.empty()) bytes_.resize(row_ * strip_height_);
+    return next(bytes_, OIIO::TypeDesc::UINT8);
+  }
 
-template <class Number>
-InputPtr read_pixels(const std::string& path, OIIO::TypeDesc type, PixelArray<Number>& image) {
-  InputPtr input = open_image(path, image);
-  image.pixels.resize(static_cast<size_t>(image.width) * image.height * image.channels);
-  if (!input->read_image(0, 0, 0, image.channels, type, image.pixels.data()))
-    throw std::runtime_error(input->geterror());
-  return input;
-}
+  const float* next_floats() override {
+    if (floats_.empty()) floats_.resize(row_ * strip_height_);
+    return next(floats_, OIIO::TypeDesc::FLOAT);
+  }
+
+  size_t memory() const override {
+    // Some of OpenImageIO's readers hold all of the file's numbers, or what they are made of.
+    const OIIO::ImageSpec& spec = input_->spec();
+    return spec.image_bytes(true) + row_ * strip_height_ * sizeof(float);
+  }
+
+ private:
+  template <class Number>
+  const Number* next(std::vector<Number>& strip, OIIO::TypeDesc type) {
+    const int in_strip = y_++ % strip_height_;
+    if (in_strip == 0) read(strip, type, std::min(y_ - 1 + strip_height_, info.height));
+    return strip.data() + row_ * in_strip;
+  }
+
+  template <class Number>
+  void read(std::vector<Number>& strip, OIIO::TypeDesc type, int end) {
+    const OIIO::ImageSpec& spec = input_->spec();
+    const int x = spec.x, y = spec.y, first = y_ - 1;
+    const bool good = spec.tile_width > 0 ? input_->read_tiles(0, 0, x, x + spec.width, y + first, y + end, spec.z,
+                                                               spec.z + 1, 0, spec.nchannels, type, strip.data())
+                                          : input_->read_scanlines(0, 0, y + first, y + end, spec.z, 0, spec.nchannels,
+                                                                   type, strip.data());
+    if (!good) throw std::runtime_error(input_->geterror());
+    if constexpr (std::is_same_v<Number, float>) divide_exactly(strip);
+  }
+
+  // OpenImageIO multiplies by 1/65535, which is an ulp off for some numbers; the quotient is what pbrt-v3 computes.
+  void divide_exactly(std::vector<float>& numbers) const {
+    const OIIO::ImageSpec& spec = input_->spec();
+    if (spec.format != OIIO::TypeDesc::UINT16 || !spec.channelformats.empty()) return;
+    for (float& v : numbers) v = std::nearbyint(v * 65535) / 65535;
+  }
+
+  std::unique_ptr<OIIO::ImageInput> input_;
+  size_t row_ = 0;
+  int strip_height_ = 1, y_ = 0;
+  std::vector<uint8_t> bytes_;
+  std::vector<float> floats_;
+};
 
 }  // namespace
 
-ImageInfo oiio_probe(const std::string& path) {
-  ImageInfo info;
-  open_image(path, info);
-  return info;
-}
-
-Image oiio_read(const std::string& path) {
-  Image image;
-  const InputPtr input = read_pixels(path, OIIO::TypeDesc::FLOAT, image);
-  divide_exactly(input->spec(), image.pixels);
-  return image;
-}
-
-ByteImage oiio_read_bytes(const std::string& path) {
-  ByteImage image;
-  read_pixels(path, OIIO::TypeDesc::UINT8, image);
-  return image;
-}
+std::unique_ptr<PictureRows> oiio_open(const std::string& path) { return std::make_unique<OiioRows>(path); }
 
 }  // namespace whit

@@ -1,0 +1,214 @@
+#include "core/image/texture_memory.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <ctime>
+#include <exception>
+#include <utility>
+
+#include "core/image/decode.h"
+
+namespace whit {
+namespace {
+
+/// Adds the time of the thread's processor to a sum of nanoseconds.
+class ThreadTime {
+ public:
+  explicit ThreadTime(std::atomic<int64_t>& sum) : sum_(sum) {}
+  ~ThreadTime() { sum_ += now() - start_; }
+  ThreadTime(const ThreadTime&) = delete;
+  ThreadTime& operator=(const ThreadTime&) = delete;
+
+ private:
+  static int64_t now() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return int64_t{1000000000} * t.tv_sec + t.tv_nsec;
+  }
+  std::atomic<int64_t>& sum_;
+  int64_t start_ = now();
+};
+
+}  // namespace
+
+// Bytes of all pyramids alive, also of those dropped but still in use, and of what is being decoded; outlives the
+// memory if a pyramid does.
+struct TextureMemory::Account {
+  std::atomic<size_t> bytes{0}, peak{0};
+  void add(size_t n) {
+    const size_t now = bytes.fetch_add(n) + n;
+    size_t old = peak.load();
+    while (old < now && !peak.compare_exchange_weak(old, now)) {}
+  }
+};
+
+// A part of the cap for what is being decoded.
+class TextureMemory::Workspace {
+ public:
+  Workspace(TextureMemory& memory, size_t bytes, const TextureSource& source) : memory_(memory), bytes_(bytes) {
+    std::unique_lock lock(memory_.workspace_mutex_);
+    // What another thread is decoding can be dropped when it is done. A texture larger than the cap is decoded alone.
+    while (!memory_.make_room(bytes, source) && memory_.workspaces_ > 0) memory_.workspace_done_.wait(lock);
+    ++memory_.workspaces_;
+    memory_.account_->add(bytes);
+  }
+  ~Workspace() { become(0); }
+  Workspace(const Workspace&) = delete;
+  Workspace& operator=(const Workspace&) = delete;
+
+  /// The part ends, and what came of it counts instead.
+  void become(size_t bytes) {
+    if (bytes_ == 0) return;
+    memory_.account_->bytes += bytes - std::exchange(bytes_, 0);
+    const std::lock_guard lock(memory_.workspace_mutex_);
+    --memory_.workspaces_;
+    memory_.workspace_done_.notify_all();
+  }
+
+ private:
+  TextureMemory& memory_;
+  size_t bytes_;
+};
+
+TextureMemory::TextureMemory(size_t limit) : account_(std::make_shared<Account>()), limit_(limit) {}
+
+TextureSource& TextureMemory::add(const TextureSpec& spec, SourcePos where) {
+  const std::lock_guard lock(mutex_);
+  return *sources_.emplace_back(std::make_unique<TextureSource>(spec, where));
+}
+
+std::vector<TextureSource*> TextureMemory::all() const {
+  std::vector<TextureSource*> all;
+  const std::lock_guard lock(mutex_);
+  for (const auto& source : sources_) all.push_back(source.get());
+  return all;
+}
+
+// The source's pyramid with the levels from `level` on, decoded if need be. Others who want it meanwhile wait; nobody
+// else does, but for those who decode when memory is short.
+std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int level) {
+  // The latest user is left alone, so a scene with one texture does not fight over the clock.
+  if (source.last_use_.load(std::memory_order_relaxed) != clock_.load(std::memory_order_relaxed))
+    source.last_use_.store(++clock_, std::memory_order_relaxed);
+  const std::lock_guard lock(source.mutex_);
+  if (source.failed_ || (source.pyramid_ && source.pyramid_->first_level() <= level)) return source.pyramid_;
+  const ThreadTime time(decode_nanoseconds_);
+  try {
+    if (!source.outline_) open(source);
+    if (level < source.outline_->first_level()) decode(source, level);
+  } catch (const std::exception& e) {
+    source.error_ = picture_error(source.spec_.path, e);
+    source.outline_ = source.pyramid_ = nullptr;
+    source.rows_ = nullptr;
+    source.failed_ = failed_ = true;
+  }
+  return source.pyramid_;
+}
+
+// What a lookup needs to tell its level: the picture's size. Called, as the next, with the source's mutex held.
+void TextureMemory::open(TextureSource& source) {
+  const TextureSpec& spec = source.spec_;
+  source.rows_ = open_picture(spec.path);
+  const ImageInfo& info = source.rows_->info;
+  const bool gamma = spec.gamma.value_or(default_gamma(spec.path, info));
+  source.options_ = {spec.kind == TextureKind::Float, spec.wrap, gamma, spec.scale, spec.flip};
+  source.pyramid_ = source.outline_ = std::make_shared<MipMap>(info, source.options_);
+}
+
+void TextureMemory::decode(TextureSource& source, int level) {
+  const int first = std::max(0, std::min<int>(level, source.finest_) - kSpareLevels);
+  source.pyramid_ = source.outline_;
+  const auto rows = source.rows_ ? std::move(source.rows_) : open_picture(source.spec_.path);
+  Workspace workspace(*this, MipMap::bytes_to_build(*rows, source.options_, first), source);
+  std::unique_ptr<const MipMap> map;
+  try {
+    map = std::make_unique<MipMap>(*rows, source.options_, first);
+  } catch (const ExceedsHalves&) { source.options_.floats = true; }
+  if (!map) return workspace.become(0), decode(source, level);
+  ++source.decodes_;
+  decoded_bytes_ += static_cast<int64_t>(map->bytes());
+  workspace.become(map->bytes());
+  source.pyramid_ = account(std::move(map));
+}
+
+// Takes the pyramid's bytes off the sum when it goes.
+std::shared_ptr<const MipMap> TextureMemory::account(std::unique_ptr<const MipMap> map) {
+  return {map.release(), [account = account_](const MipMap* old) {
+            account->bytes -= old->bytes();
+            delete old;
+          }};
+}
+
+// Frees memory until `wanted` more bytes fit: first levels finer than anyone has looked up (one of them is kept if
+// possible, because the next ray may be a little nearer), then whole pyramids, the least recently used first. False when
+// that was not enough.
+bool TextureMemory::make_room(size_t wanted, const TextureSource& wanting) {
+  const auto fits = [&] { return account_->bytes.load() + wanted <= limit_.load(); };
+  if (fits()) return true;
+  std::vector<TextureSource*> oldest = all();
+  std::erase(oldest, &wanting);
+  std::stable_sort(oldest.begin(), oldest.end(), [](const auto* a, const auto* b) {
+    return a->last_use_.load(std::memory_order_relaxed) < b->last_use_.load(std::memory_order_relaxed);
+  });
+  const auto each = [&](auto reduce) {
+    for (TextureSource* source : oldest) {
+      if (fits()) return;
+      const std::unique_lock lock(source->mutex_, std::try_to_lock);
+      if (lock && source->pyramid_ != source->outline_) reduce(*source);  // else being decoded, or not resident
+    }
+  };
+  for (const int spare : {1, 0}) each([&](TextureSource& source) { trim(source, spare); });
+  each([&](TextureSource& source) {
+    source.pyramid_ = source.outline_;
+    ++evictions_;
+  });
+  return fits();
+}
+
+// Gives up the levels that no lookup has needed, but for `spare` of them.
+void TextureMemory::trim(TextureSource& source, int spare) {
+  const int finest = source.finest_, first = finest - spare;
+  if (finest == TextureSource::kNone || first <= source.pyramid_->first_level()) return;
+  auto rest = std::make_unique<MipMap>(*source.pyramid_, first);
+  account_->bytes += rest->bytes();
+  source.pyramid_ = account(std::move(rest));
+  ++trims_;
+}
+
+void TextureMemory::read_all() {
+  const std::vector<TextureSource*> sources = all();
+  tbb::parallel_for(size_t{0}, sources.size(), [&](size_t i) {
+    TextureSource& source = *sources[i];
+    const auto outline = resident(source, TextureSource::kNone);
+    if (!outline) return;
+    resident(source, outline->level_count() - 1);
+    const std::lock_guard lock(source.mutex_);
+    if (!source.failed_) source.pyramid_ = source.outline_;
+  });
+}
+
+TextureStatistics TextureMemory::statistics() const {
+  TextureStatistics s;
+  s.resident_bytes = account_->bytes, s.peak_bytes = account_->peak;
+  s.trims = trims_, s.evictions = evictions_;
+  s.decoded_bytes = decoded_bytes_, s.decode_seconds = 1e-9 * static_cast<double>(decode_nanoseconds_);
+  for (const TextureSource* source : all()) {
+    const int64_t decodes = source->decodes_;
+    s.files += decodes > 0;
+    s.decodes += decodes;
+    s.lookups += source->lookups_.load(std::memory_order_relaxed);
+  }
+  return s;
+}
+
+Diagnostics TextureMemory::errors() const {
+  Diagnostics errors;
+  for (TextureSource* source : all()) {
+    const std::lock_guard lock(source->mutex_);
+    if (!source->error_.empty()) errors.file_error(source->where_, source->error_);
+  }
+  return errors;
+}
+
+}  // namespace whit
