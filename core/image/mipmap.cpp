@@ -11,9 +11,12 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
+#include <stdexcept>
 #include <type_traits>
 
 #include "core/image/picture_rows.h"
+#include "core/image/scratch_file.h"
 
 namespace whit {
 namespace {
@@ -80,6 +83,9 @@ void halve_rows(const float* upper, const float* lower, int width, int channels,
     for (size_t s = 0; s < count; ++s) std::copy_n(sums + 6 * s, 3, out + 3 * s);
   }
 }
+
+// For lookups that are only asked which level they need.
+constexpr float kNoTexel[3] = {};
 
 // Rows of a picture in memory.
 template <class Number>
@@ -157,25 +163,23 @@ class MipMap::Builder {
     level->width = map_.width(i);
     level->height = map_.height(i);
     level->storage = map_.storage(i);
-    const size_t n = numbers(i) * level->height;
-    if (level->storage == Storage::Bytes) level->bytes.resize(n);
-    if (level->storage == Storage::Floats) level->floats.resize(n);
-    if (level->storage == Storage::Halves) {
-      level->halves.reserve(n + 1);  // lookups read a texel of three as four
-      level->halves.resize(n);
-    }
+    level->memory = std::make_shared<TexelBlock>(map_.bytes_of(i));
+    level->texels = level->memory->as<void>();
     return level;
   }
 
-  // Only the builder writes to levels, and only to its own.
-  Level& level(int i) { return const_cast<Level&>(*map_.levels_[i]); }
+  // Where row t of a level goes: only the builder writes to it.
+  template <class T>
+  T* row_of(int i, int t) {
+    return map_.levels_[i]->memory->as<T>() + numbers(i) * t;
+  }
 
   void add_bytes(int t, const uint8_t* pixels) {
     if (map_.storage(0) != Storage::Bytes) {
       texels_.convert(pixels, row_.data());
       return add_finest(t);
     }
-    if (map_.first_ == 0) texels_.pick(pixels, level(0).bytes.data() + numbers(0) * t);
+    if (map_.first_ == 0) texels_.pick(pixels, row_of<uint8_t>(0, t));
     if (map_.level_count() == 1) return;
     texels_.convert(pixels, row_.data());
     descend(0, t, row_.data());
@@ -193,10 +197,8 @@ class MipMap::Builder {
 
   void add(int i, int t, const float* row) {
     if (i >= map_.first_) {
-      Level& to = level(i);
-      const size_t n = numbers(i), at = n * t;
-      if (to.storage == Storage::Halves) to_halves(row, n, to.halves.data() + at);
-      else std::copy_n(row, n, to.floats.data() + at);
+      if (map_.storage(i) == Storage::Halves) to_halves(row, numbers(i), row_of<Imath::half>(i, t));
+      else std::copy_n(row, numbers(i), row_of<float>(i, t));
     }
     if (i + 1 < map_.level_count()) descend(i, t, row);
   }
@@ -220,15 +222,16 @@ class MipMap::Builder {
   void read_and_enlarge(PictureRows& rows) {
     const bool bytes = image_.format == SampleFormat::UInt8;
     const size_t row = static_cast<size_t>(image_.width) * (bytes ? image_.channels : map_.channels_);
-    std::vector<uint8_t, PageAllocator<uint8_t>> pixels(bytes ? row * image_.height : 0);
-    std::vector<float, PageAllocator<float>> texels(bytes ? 0 : row * image_.height);
+    const TexelBlock picture(row * image_.height * (bytes ? 1 : sizeof(float)));
+    uint8_t* const pixels = picture.as<uint8_t>();
+    float* const texels = picture.as<float>();
     for (int y = 0; y < image_.height; ++y) {
-      if (bytes) std::copy_n(rows.next_bytes(), row, pixels.data() + row * y);
-      else texels_.convert(rows.next_floats(), texels.data() + row * y);
+      if (bytes) std::copy_n(rows.next_bytes(), row, pixels + row * y);
+      else texels_.convert(rows.next_floats(), texels + row * y);
     }
     EnlargedRows enlarged(image_.width, image_.height, map_.channels_, map_.wrap_, [&](int t, float* to) {
-      if (bytes) texels_.convert(pixels.data() + row * flipped(t), to);
-      else std::copy_n(texels.data() + row * flipped(t), row, to);
+      if (bytes) texels_.convert(pixels + row * flipped(t), to);
+      else std::copy_n(texels + row * flipped(t), row, to);
     });
     for (int t = 0; t < map_.height(); ++t) {
       enlarged.make(t, row_.data());
@@ -263,7 +266,7 @@ MipMap::MipMap(const ImageInfo& image, const MipMapOptions& options)
     level->width = static_cast<int>(width);
     level->height = static_cast<int>(height);
     if (width > 1 || height > 1) continue;
-    level->floats.assign(channels_, 0.0f);  // for lookups that are only asked which level they need
+    level->texels = kNoTexel;
     break;
   }
   first_ = level_count();
@@ -315,6 +318,24 @@ size_t MipMap::bytes() const {
   size_t sum = 0;
   for (int i = first_; i < level_count(); ++i) sum += bytes_of(i);
   return sum;
+}
+
+std::unique_ptr<const MipMap> MipMap::in_file(ScratchFile& file) const {
+  std::vector<std::span<const std::byte>> pieces;
+  for (int i = first_; i < level_count(); ++i)
+    pieces.push_back({static_cast<const std::byte*>(levels_[i]->texels), bytes_of(i)});
+  auto copy = std::unique_ptr<MipMap>(new MipMap(*this));
+  copy->in_file_ = file.write(pieces);
+  if (!copy->in_file_) return nullptr;
+  size_t at = 0;
+  for (int i = first_; i < level_count(); ++i) {
+    const auto level = std::make_shared<Level>(*levels_[i]);
+    level->memory = copy->in_file_;
+    level->texels = copy->in_file_->as<void>(at);
+    copy->levels_[i] = level;
+    at += (bytes_of(i) + ScratchFile::kAlign - 1) / ScratchFile::kAlign * ScratchFile::kAlign;
+  }
+  return copy;
 }
 
 }  // namespace whit

@@ -18,13 +18,14 @@
 #include <vector>
 
 #include "core/image/image.h"
-#include "core/image/page_allocator.h"
+#include "core/image/texel_block.h"
 #include "core/image/texels.h"
 #include "core/image/texture_kinds.h"
 
 namespace whit {
 
 class PictureRows;
+class ScratchFile;
 
 /// What a MIP map is made of besides the picture.
 struct MipMapOptions {
@@ -85,7 +86,15 @@ class MipMap {
   int first_level() const { return first_; }  ///< The finest level it has, level_count() when it has none.
   int width(int level = 0) const { return levels_[level]->width; }    ///< A power of two.
   int height(int level = 0) const { return levels_[level]->height; }  ///< A power of two.
-  size_t bytes() const;                                               ///< Memory the texels take.
+  size_t bytes() const;                                               ///< Of the levels that it has.
+
+  /// The same with its texels in a file; null when they cannot be.
+  std::unique_ptr<const MipMap> in_file(ScratchFile& file) const;
+
+  bool is_in_file() const { return in_file_ != nullptr; }
+
+  /// Gives back the memory that texels in a file take. Others may look up meanwhile.
+  void give_back() const { in_file_->give_back(); }
 
   /// n filtered values; `out` has one array for each channel. Returns the finest level that the points need: when
   /// that is finer than first_level(), the values are of no use.
@@ -99,9 +108,11 @@ class MipMap {
   struct Level {
     int width = 0, height = 0;
     Storage storage = Storage::Floats;
-    std::vector<uint8_t, PageAllocator<uint8_t>> bytes;           // decoded by byte_values_
-    std::vector<Imath::half, PageAllocator<Imath::half>> halves;  // times gain_
-    std::vector<float, PageAllocator<float>> floats;
+    std::shared_ptr<const TexelBlock> memory;
+    const void* texels = nullptr;  // in there; null when the level is not
+    const uint8_t* bytes() const { return static_cast<const uint8_t*>(texels); }           // decoded by byte_values_
+    const Imath::half* halves() const { return static_cast<const Imath::half*>(texels); }  // times gain_
+    const float* floats() const { return static_cast<const float*>(texels); }
   };
   class Builder;
   template <int C>
@@ -122,6 +133,7 @@ class MipMap {
   void ewa_lookups(S& sampler, const LookupPoints& p, const MipFilter& filter, float* const* out) const;
 
   std::vector<std::shared_ptr<const Level>> levels_;
+  std::shared_ptr<const TexelBlock> in_file_;
   int first_ = 0;
   int channels_ = 0;
   WrapMode wrap_ = WrapMode::Repeat;

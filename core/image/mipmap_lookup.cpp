@@ -274,19 +274,19 @@ class MipMap::Sampler {
   Value<C> with_fetch(const Level& level, const F& f) const {
     switch (level.storage) {
       case Storage::Bytes:
-        return f([bytes = level.bytes.data(), table = map_.byte_values_.data()](size_t i) {
+        return f([bytes = level.bytes(), table = map_.byte_values_.data()](size_t i) {
           Value<C> v;
           for (int c = 0; c < C; ++c) v[c] = table[bytes[i * C + c]];
           return v;
         });
       case Storage::Halves:
-        return f([halves = level.halves.data(), gain = map_.gain_](size_t i) {
+        return f([halves = level.halves(), gain = map_.gain_](size_t i) {
           Value<C> v;
           for (int c = 0; c < C; ++c) v[c] = static_cast<float>(halves[i * C + c]) * gain;
           return v;
         });
       default:
-        return f([floats = level.floats.data()](size_t i) {
+        return f([floats = level.floats()](size_t i) {
           Value<C> v;
           for (int c = 0; c < C; ++c) v[c] = floats[i * C + c];
           return v;
@@ -303,14 +303,14 @@ class MipMap::Sampler {
     Texel<C> sum{};
     switch (l.storage) {
       case Storage::Bytes:
-        sum = weigh<true>(e, l, l.bytes.data(), weights, [=](const uint8_t* at) { return decode_texel<C>(at, table); });
+        sum = weigh<true>(e, l, l.bytes(), weights, [=](const uint8_t* at) { return decode_texel<C>(at, table); });
         break;
       case Storage::Halves:
-        sum = weigh<true>(e, l, l.halves.data(), weights, [](const Imath::half* at) { return load_texel<C>(at); });
+        sum = weigh<true>(e, l, l.halves(), weights, [](const Imath::half* at) { return load_texel<C>(at); });
         sum *= map_.gain_;
         break;
       case Storage::Floats:
-        sum = weigh<false>(e, l, l.floats.data(), weights, [](const float* at) { return load_texel<C>(at); });
+        sum = weigh<false>(e, l, l.floats(), weights, [](const float* at) { return load_texel<C>(at); });
         break;
     }
     if (!(weights > 0)) return bilinear(level, s, t);

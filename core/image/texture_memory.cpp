@@ -92,7 +92,11 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
   if (source.last_use_.load(std::memory_order_relaxed) != clock_.load(std::memory_order_relaxed))
     source.last_use_.store(++clock_, std::memory_order_relaxed);
   const std::lock_guard lock(source.mutex_);
-  if (source.failed_ || (source.pyramid_ && source.pyramid_->first_level() <= level)) return source.pyramid_;
+  if (source.failed_) return nullptr;
+  if (source.pyramid_ && source.pyramid_->first_level() <= level) {
+    if (!source.in_memory_) bring_back(source);
+    return source.pyramid_;
+  }
   const ThreadTime time(decode_nanoseconds_);
   try {
     if (!source.outline_) open(source);
@@ -100,6 +104,7 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
   } catch (const std::exception& e) {
     source.error_ = picture_error(source.spec_.path, e);
     source.outline_ = source.pyramid_ = nullptr;
+    source.in_memory_ = false;
     source.rows_ = nullptr;
     source.failed_ = failed_ = true;
   }
@@ -118,7 +123,7 @@ void TextureMemory::open(TextureSource& source) {
 
 void TextureMemory::decode(TextureSource& source, int level) {
   const int first = std::max(0, std::min<int>(level, source.finest_) - kSpareLevels);
-  source.pyramid_ = source.outline_;
+  replace(source, source.outline_, false);
   const auto rows = source.rows_ ? std::move(source.rows_) : open_picture(source.spec_.path);
   Workspace workspace(*this, MipMap::bytes_to_build(*rows, source.options_, first), source);
   std::unique_ptr<const MipMap> map;
@@ -129,7 +134,7 @@ void TextureMemory::decode(TextureSource& source, int level) {
   ++source.decodes_;
   decoded_bytes_ += static_cast<int64_t>(map->bytes());
   workspace.become(map->bytes());
-  source.pyramid_ = account(std::move(map));
+  replace(source, account(std::move(map)), true);
 }
 
 // Takes the pyramid's bytes off the sum when it goes.
@@ -140,40 +145,72 @@ std::shared_ptr<const MipMap> TextureMemory::account(std::unique_ptr<const MipMa
           }};
 }
 
-// Frees memory until `wanted` more bytes fit: first levels finer than anyone has looked up (one of them is kept if
-// possible, because the next ray may be a little nearer), then whole pyramids, the least recently used first. False when
-// that was not enough.
+// Texels in the file come back by being read. An outline takes nothing.
+void TextureMemory::bring_back(TextureSource& source) {
+  const size_t bytes = source.pyramid_->bytes();
+  if (bytes == 0) return;
+  Workspace(*this, bytes, source).become(bytes);
+  source.in_memory_ = true;
+  ++returns_;
+}
+
+// Frees memory until `wanted` more bytes fit: first levels finer than anyone has looked up, then whole pyramids, the least
+// recently used first. False when that was not enough.
 bool TextureMemory::make_room(size_t wanted, const TextureSource& wanting) {
   const auto fits = [&] { return account_->bytes.load() + wanted <= limit_.load(); };
   if (fits()) return true;
-  std::vector<TextureSource*> oldest = all();
-  std::erase(oldest, &wanting);
-  std::stable_sort(oldest.begin(), oldest.end(), [](const auto* a, const auto* b) {
-    return a->last_use_.load(std::memory_order_relaxed) < b->last_use_.load(std::memory_order_relaxed);
-  });
-  const auto each = [&](auto reduce) {
-    for (TextureSource* source : oldest) {
-      if (fits()) return;
-      const std::unique_lock lock(source->mutex_, std::try_to_lock);
-      if (lock && source->pyramid_ != source->outline_) reduce(*source);  // else being decoded, or not resident
-    }
+  struct Use {
+    int64_t when;
+    TextureSource* source;
+    bool operator<(const Use& other) const { return when > other.when; }  // for a heap with the oldest first
   };
-  for (const int spare : {1, 0}) each([&](TextureSource& source) { trim(source, spare); });
-  each([&](TextureSource& source) {
-    source.pyramid_ = source.outline_;
-    ++evictions_;
-  });
+  std::vector<Use> uses;
+  for (TextureSource* source : all())
+    if (source != &wanting && source->in_memory_)
+      uses.push_back({source->last_use_.load(std::memory_order_relaxed), source});
+  // One that is being decoded, or looked for, is left alone.
+  const auto reduce = [&](TextureSource& source, void (TextureMemory::*how)(TextureSource&)) {
+    const std::unique_lock lock(source.mutex_, std::try_to_lock);
+    if (lock && source.in_memory_) (this->*how)(source);
+  };
+  for (const Use& use : uses)
+    if (!fits() && use.source->first_ < use.source->finest_) reduce(*use.source, &TextureMemory::trim);
+  std::make_heap(uses.begin(), uses.end());
+  while (!fits() && !uses.empty()) {
+    std::pop_heap(uses.begin(), uses.end());
+    reduce(*uses.back().source, &TextureMemory::evict);
+    uses.pop_back();
+  }
   return fits();
 }
 
-// Gives up the levels that no lookup has needed, but for `spare` of them.
-void TextureMemory::trim(TextureSource& source, int spare) {
-  const int finest = source.finest_, first = finest - spare;
-  if (finest == TextureSource::kNone || first <= source.pyramid_->first_level()) return;
-  auto rest = std::make_unique<MipMap>(*source.pyramid_, first);
+// Gives up the levels that no lookup has needed.
+void TextureMemory::trim(TextureSource& source) {
+  const int finest = source.finest_;
+  if (finest == TextureSource::kNone || finest <= source.first_ || source.pyramid_->is_in_file()) return;
+  auto rest = std::make_unique<MipMap>(*source.pyramid_, finest);
   account_->bytes += rest->bytes();
-  source.pyramid_ = account(std::move(rest));
+  replace(source, account(std::move(rest)), true);
   ++trims_;
+}
+
+// Gives up all levels, but for their place in the file, if they can have one.
+void TextureMemory::evict(TextureSource& source) {
+  ++evictions_;
+  if (source.pyramid_->is_in_file()) return replace(source, source.pyramid_, false);
+  std::shared_ptr<const MipMap> in_file = source.pyramid_->in_file(scratch_);
+  replace(source, in_file ? std::move(in_file) : source.outline_, false);
+}
+
+// Pyramids in memory are accounted for until they go, those in the file while they are in use.
+void TextureMemory::replace(TextureSource& source, std::shared_ptr<const MipMap> pyramid, bool in_memory) {
+  if (source.in_memory_ && source.pyramid_->is_in_file()) {
+    account_->bytes -= source.pyramid_->bytes();
+    source.pyramid_->give_back();
+  }
+  source.pyramid_ = std::move(pyramid);
+  source.first_ = source.pyramid_->first_level();
+  source.in_memory_ = in_memory;
 }
 
 void TextureMemory::read_all() {
@@ -184,14 +221,14 @@ void TextureMemory::read_all() {
     if (!outline) return;
     resident(source, outline->level_count() - 1);
     const std::lock_guard lock(source.mutex_);
-    if (!source.failed_) source.pyramid_ = source.outline_;
+    if (!source.failed_) replace(source, source.outline_, false);
   });
 }
 
 TextureStatistics TextureMemory::statistics() const {
   TextureStatistics s;
   s.resident_bytes = account_->bytes, s.peak_bytes = account_->peak;
-  s.trims = trims_, s.evictions = evictions_;
+  s.trims = trims_, s.evictions = evictions_, s.returns = returns_;
   s.decoded_bytes = decoded_bytes_, s.decode_seconds = 1e-9 * static_cast<double>(decode_nanoseconds_);
   for (const TextureSource* source : all()) {
     const int64_t decodes = source->decodes_;

@@ -13,6 +13,7 @@
 
 #include "core/image/mipmap.h"
 #include "core/image/picture_rows.h"
+#include "core/image/scratch_file.h"
 #include "core/image/texture_store.h"
 
 namespace whit {
@@ -43,8 +44,10 @@ class TextureSource {
   std::string error_;
   bool failed_ = false;
 
-  std::atomic<int> finest_{kNone};     // the finest level that lookups have needed
-  std::atomic<int64_t> last_use_{-1};  // the memory's clock at the latest lookup
+  std::atomic<bool> in_memory_{false};  // the pyramid has levels, and they are accounted for
+  std::atomic<int> first_{kNone};       // the finest that it has
+  std::atomic<int> finest_{kNone};      // the finest that lookups have needed
+  std::atomic<int64_t> last_use_{-1};   // the memory's clock at the latest lookup
   std::atomic<int64_t> decodes_{0};
   alignas(64) std::atomic<int64_t> lookups_{0};
 };
@@ -79,17 +82,21 @@ class TextureMemory {
   void open(TextureSource& source);
   void decode(TextureSource& source, int level);
   std::shared_ptr<const MipMap> account(std::unique_ptr<const MipMap> map);
+  void bring_back(TextureSource& source);
   bool make_room(size_t wanted, const TextureSource& wanting);
-  void trim(TextureSource& source, int spare);
+  void trim(TextureSource& source);
+  void evict(TextureSource& source);
+  void replace(TextureSource& source, std::shared_ptr<const MipMap> pyramid, bool in_memory);
 
   static constexpr int kSpareLevels = 1;  // decoded beyond what is asked for: the next ray may be a little nearer
 
   mutable std::mutex mutex_;  // guards the list, not the sources
   std::vector<std::unique_ptr<TextureSource>> sources_;
   std::shared_ptr<Account> account_;
+  ScratchFile scratch_;
   std::atomic<size_t> limit_;
   std::atomic<bool> failed_{false};
-  std::atomic<int64_t> trims_{0}, evictions_{0}, decoded_bytes_{0}, decode_nanoseconds_{0};
+  std::atomic<int64_t> trims_{0}, evictions_{0}, returns_{0}, decoded_bytes_{0}, decode_nanoseconds_{0};
   std::atomic<int64_t> clock_{0};  // counts changes of the texture in use
   std::mutex workspace_mutex_;     // guards workspaces_: how many threads are decoding
   std::condition_variable workspace_done_;

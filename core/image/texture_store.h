@@ -33,7 +33,8 @@ struct TextureStatistics {
   int64_t decoded_bytes = 0;  ///< Of the levels that decoding kept, all decodes together.
   double decode_seconds = 0;  ///< Processor time of decoding, from opening a file to its levels.
   int64_t trims = 0;          ///< Times that levels nobody had looked up were given up.
-  int64_t evictions = 0;      ///< Times that all of a texture was.
+  int64_t evictions = 0;      ///< Times that all of a texture was, or went into a file.
+  int64_t returns = 0;        ///< Times that it came back from there.
   int64_t lookups = 0;        ///< Points looked up.
 };
 
@@ -91,9 +92,10 @@ class TextureStore {
   /// `where` is the place of the file's name, for errors().
   const ImageTexture* add(const TextureSpec& spec, SourcePos where = {});
 
-  /// The most bytes (kDefaultMemory unless set) that texels and what is being decoded may take. Before there would be more, levels
-  /// finer than anyone has looked up are dropped, then whole textures, the least recently used first, and decoded again
-  /// when needed. One in use stays until its lookup ends; the latest decoded stays in any case.
+  /// The most bytes (kDefaultMemory unless set) that texels and what is being decoded may take. Before there would be
+  /// more, levels finer than anyone has looked up are dropped, to be decoded again when needed; then whole textures, the
+  /// least recently used first, go into a nameless file in $TMPDIR or /var/tmp and come back from there, or are dropped
+  /// too where it has no room. One in use stays until its lookup ends; the latest decoded stays in any case.
   void set_memory_limit(size_t bytes);
 
   TextureStatistics statistics() const;

@@ -65,31 +65,33 @@ class TextureMemory(unittest.TestCase):
         spec.attribute("png:compressionLevel", 1)
         self.assertTrue(out.open(self.path(name + ".png"), spec) and out.write_image(pixels) and out.close())
 
-    def render(self, scene, *flags):
+    def render(self, scene, *flags, folder="/var/tmp"):
         """Pixels, peak resident size in MiB, and the statistics of textures."""
         import OpenImageIO as oiio  # pylint: disable=import-outside-toplevel
         self.pictures += 1  # of a name used before, ImageBuf may remember the old pixels
         picture = self.path("%d.exr" % self.pictures)
         done = subprocess.run([WHIT, scene, "--outfile", picture, "--display", "none", "--type", "float", "--stats", *flags],
-                              capture_output=True, text=True, check=False, cwd=self.folder)
+                              capture_output=True, text=True, check=False, cwd=self.folder, env={**os.environ, "TMPDIR": folder})
         self.assertEqual(done.returncode, 0, done.stderr)
         resident = re.search(r"peak memory (\d+) MiB", done.stderr)
-        m = re.search(r"textures: .* lookups, (\d+) decodes, (\d+) trims, (\d+) evictions, peak ([\d.]+) (K|M)iB", done.stderr)
+        m = re.search(r"textures: .* lookups, (\d+) decodes .*, (\d+) trims, (\d+) evictions, (\d+) returns, peak ([\d.]+) (K|M)iB",
+                      done.stderr)
         return oiio.ImageBuf(picture).get_pixels(oiio.FLOAT), int(resident[1]), (
-            int(m[1]), int(m[2]), int(m[3]), float(m[4]) / (1024 if m[5] == "K" else 1))
+            *(int(n) for n in m.groups()[:4]), float(m[5]) / (1024 if m[6] == "K" else 1))
 
     def test_the_cap_holds_and_the_picture_is_the_same(self):
-        whole, whole_rss, (decodes, trims, evictions, _) = self.render(self.scene)
+        whole, whole_rss, (decodes, trims, evictions, _, _) = self.render(self.scene)
         self.assertEqual((decodes, trims, evictions), (COLUMNS * ROWS, 0, 0))
         self.assertGreater(float(whole.std()), 0.05)
         _, one_rss, _ = self.render(self.scene, "--cropwindow", "0", "0.05", "0", "0.05")  # one texture
         if not SANITIZED:
             self.assertGreater(whole_rss, one_rss + 18)
         for threads in (1, 2):
-            capped, rss, (decodes, trims, evictions, peak) = self.render(
+            capped, rss, (decodes, trims, evictions, returns, peak) = self.render(
                 self.scene, "--texture-memory", str(CAP), "--nthreads", str(threads))
             self.assertEqual(int((capped.view("uint32") != whole.view("uint32")).sum()), 0)
-            self.assertGreater(decodes, COLUMNS * ROWS)
+            self.assertEqual(decodes, COLUMNS * ROWS)  # what there is no room for comes back from a file
+            self.assertGreater(returns, 0)
             self.assertGreater(trims, 0)
             self.assertGreater(evictions, 0)
             # One that another thread is in the middle of may be dropped, but not freed.
@@ -97,11 +99,20 @@ class TextureMemory(unittest.TestCase):
             if not SANITIZED:
                 self.assertLess(rss, one_rss + 12)
 
+    def test_without_a_place_for_the_file_they_are_decoded_again(self):
+        whole, _, _ = self.render(self.scene)
+        capped, _, (decodes, _, _, returns, peak) = self.render(
+            self.scene, "--texture-memory", str(CAP), "--nthreads", "1", folder="/nowhere/at/all")
+        self.assertEqual(int((capped.view("uint32") != whole.view("uint32")).sum()), 0)
+        self.assertGreater(decodes, COLUMNS * ROWS)
+        self.assertEqual(returns, 0)
+        self.assertLess(peak, CAP + 0.5)
+
     def test_seen_from_afar_they_all_fit(self):
         # 32 pixels see 1.1 textures of 512, so that the finest level is log2(1.1 x 16) = 4, of 32 x 32 texels: all 60
         # take 60 x 3 x 2 x 32^2 x 4/3 = 0.5 MiB.
         scene = self.write("far.pbrt", HEADER + re.sub(r'scale" \[[\d.]+\]', 'scale" [1.1]', self.quads) + "WorldEnd\n")
-        _, _, (decodes, _, evictions, peak) = self.render(scene, "--texture-memory", str(CAP), "--nthreads", "1")
+        _, _, (decodes, _, evictions, _, peak) = self.render(scene, "--texture-memory", str(CAP), "--nthreads", "1")
         self.assertEqual((decodes, evictions), (COLUMNS * ROWS, 0))
         self.assertLessEqual(peak, CAP)
 
@@ -110,7 +121,7 @@ class TextureMemory(unittest.TestCase):
         with open(self.path("t0.png"), "rb") as whole, open(self.path("cut.png"), "wb") as cut:
             cut.write(whole.read(4096))
         behind = self.write("behind.pbrt", HEADER + self.quads + quad("cut", 0, 0, -1, 1) + "WorldEnd\n")
-        _, _, (decodes, _, _, _) = self.render(behind)
+        _, _, (decodes, _, _, _, _) = self.render(behind)
         self.assertEqual(decodes, COLUMNS * ROWS)
         before = self.write("before.pbrt", HEADER + self.quads + quad("cut", 0, 0, 1, 1) + "WorldEnd\n")
         done = subprocess.run([WHIT, before, "--outfile", self.path("y.exr")], capture_output=True, text=True, check=False,

@@ -58,8 +58,11 @@ void more_statistics(const RenderOutcome& outcome) {
                   count_text(s.lens_samples), count_text(s.alpha_tests), count_text(s.texture_values)));
   say(fmt::format("{} times a light could reach none of a batch of points, and was skipped.",
                   count_text(s.lights_skipped)));
-  say(fmt::format("textures: {} lookups, {} decodes, {} trims, {} evictions, peak {}.", count_text(t.lookups),
-                  t.decodes, t.trims, t.evictions, bytes_text(static_cast<double>(t.peak_bytes))));
+  say(fmt::format(
+      "textures: {} lookups, {} decodes of {} files in {} of CPU to {}, {} trims, {} evictions, {} returns, peak {}.",
+      count_text(t.lookups), t.decodes, t.files, duration_text(t.decode_seconds),
+      bytes_text(static_cast<double>(t.decoded_bytes)), t.trims, t.evictions, t.returns,
+      bytes_text(static_cast<double>(t.peak_bytes))));
 }
 
 /// Where there are many, that each was sampled, or how few were; integrators that always choose say nothing.

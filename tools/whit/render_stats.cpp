@@ -34,6 +34,18 @@ Json rays(const RenderStatistics& s) {
       {"probe", s.probe_rays}};
 }
 
+Json textures(const TextureStatistics& t) {
+  return Json::Object{{"lookups", t.lookups},
+                      {"files", t.files},
+                      {"decodes", t.decodes},
+                      {"decode_cpu_seconds", t.decode_seconds},
+                      {"decoded_bytes", t.decoded_bytes},
+                      {"trims", t.trims},
+                      {"evictions", t.evictions},
+                      {"returns", t.returns},
+                      {"peak_bytes", static_cast<int64_t>(t.peak_bytes)}};
+}
+
 /// One value by itself, several as an array.
 Json values_of(const Parameter& p) {
   Json::Array values;
@@ -97,6 +109,7 @@ void RenderStats::add(const RenderSettings& settings, const std::string& scene, 
                                    {"start", Json::Object{{"seconds", start(outcome, &Elapsed::wall)},
                                                           {"cpu_seconds", start(outcome, &Elapsed::cpu)}}},
                                    {"rays", rays(s)},
+                                   {"textures", textures(outcome.textures.statistics())},
                                    {"samples", s.camera_samples},
                                    {"memory_bytes", static_cast<int64_t>(peak_memory())},
                                    {"invalid_samples", s.invalid_samples},
