@@ -11,8 +11,8 @@ namespace whit {
 namespace {
 
 // The bytes of a pixel, widened so that their differences fit (vectors are an extension of GCC and Clang).
-using Pixel [[gnu::vector_size(16)]] = int16_t;
-using Bytes [[gnu::vector_size(8)]] = uint8_t;
+using Pixel = int16_t __attribute__((vector_size(16)));
+using Bytes = uint8_t __attribute__((vector_size(8)));
 
 // Through a register, though pixels of three bytes read a fourth: pieces put together in memory would be waited for.
 template <int kStep>
@@ -39,7 +39,7 @@ Pixel nearest(Pixel left, Pixel above, Pixel corner, Pixel above_less_corner) {
   const Pixel to_left = magnitude(above_less_corner), to_above = magnitude(left_less_corner);
   const Pixel to_corner = magnitude(above_less_corner + left_less_corner);
   const Pixel other = to_above <= to_corner ? above : corner;
-  return (to_left <= to_above) & (to_left <= to_corner) ? left : other;
+  return ((to_left <= to_above) & (to_left <= to_corner)) ? left : other;
 }
 
 // Adds to each pixel what predict(left, above, above left) is.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/base/vec.h"
+#include "core/batch/lanes.h"
 
 namespace whit {
 namespace {
@@ -85,11 +86,11 @@ template <class Number, class Out, class Value, class Luminance>
 void TexelRows::select(const Number* p, Out* to, const Value& value, const Luminance& luminance_of) const {
   const auto [r, g, b] = rgb_;
   if (grey_) {
-    for (int x = 0; x < width_; ++x) to[x] = value(p[x * pixel_ + r]);
+    for_lanes(width_, [&, n = pixel_, first = r](int x) { to[x] = value(p[x * n + first]); });
   } else if (channels_ == 1) {
     for (int x = 0; x < width_; ++x, p += pixel_) to[x] = luminance_of(p[r], p[g], p[b]);
   } else if (pixel_ == 3 && r == 0 && g == 1 && b == 2) {
-    for (int i = 0; i < 3 * width_; ++i) to[i] = value(p[i]);
+    for_lanes(3 * width_, [&](int i) { to[i] = value(p[i]); });
   } else {
     for (int x = 0; x < width_; ++x, p += pixel_, to += 3)
       to[0] = value(p[r]), to[1] = value(p[g]), to[2] = value(p[b]);
@@ -99,7 +100,7 @@ void TexelRows::select(const Number* p, Out* to, const Value& value, const Lumin
 // The luminance is of undecoded numbers. Most pictures for numbers are grey, whatever they are stored as.
 void TexelRows::convert(const uint8_t* pixels, float* texels) const {
   select(
-      pixels, texels, [this](uint8_t v) { return of_byte_[v]; },
+      pixels, texels, [table = of_byte_.data()](uint8_t v) { return table[v]; },
       [this](uint8_t r, uint8_t g, uint8_t b) {
         return r == g && g == b ? of_grey_[r] : decode(luminance(RGB(byte_value(r), byte_value(g), byte_value(b))));
       });
@@ -152,21 +153,25 @@ std::vector<EnlargedRows::Taps> EnlargedRows::taps(int old_size, int new_size, W
   return taps;
 }
 
+template <int kChannels>
 void EnlargedRows::widen(const float* from, float* to) const {
-  for (const Taps& t : s_taps_)
-    for (int c = 0; c < channels_; ++c) {
-      float sum = 0;
-      for (int j = 0; j < kTaps; ++j)
-        if (t.index[j] >= 0) sum += t.weight[j] * from[t.index[j] * channels_ + c];
-      *to++ = sum;
+  for (const Taps& t : s_taps_) {
+    float sum[kChannels] = {};
+    for (int j = 0; j < kTaps; ++j) {
+      if (t.index[j] < 0) continue;
+      const float* const texel = from + t.index[j] * kChannels;
+      for (int c = 0; c < kChannels; ++c) sum[c] += t.weight[j] * texel[c];
     }
+    to = std::copy_n(sum, kChannels, to);
+  }
 }
 
 const float* EnlargedRows::wide_row(const Taps& taps, int j) {
   const size_t place = static_cast<size_t>(taps.first + j) % kTaps;
   if (std::exchange(number_[place], taps.index[j]) != taps.index[j]) {
     row_(taps.index[j], narrow_.data());
-    widen(narrow_.data(), wide_[place].data());
+    if (channels_ == 1) widen<1>(narrow_.data(), wide_[place].data());
+    else widen<3>(narrow_.data(), wide_[place].data());
   }
   return wide_[place].data();
 }

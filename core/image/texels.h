@@ -83,6 +83,7 @@ class EnlargedRows {
     std::array<float, kTaps> weight;
   };
   static std::vector<Taps> taps(int old_size, int new_size, WrapMode wrap);
+  template <int kChannels>
   void widen(const float* from, float* to) const;
   const float* wide_row(const Taps& taps, int j);
 

@@ -46,8 +46,8 @@ class TextureMemory(unittest.TestCase):
         for i in range(COLUMNS * ROWS):
             pixels = numpy.stack([(x * (i + 1)) % 256, (y * (i + 2)) % 256, (x ^ y) % 256], 2).astype(numpy.uint8)
             self.write_png("t%d" % i, pixels)
-            # 32 pixels see a fifth of every third texture, in its finest level, and all of the others, 16 texels a pixel.
-            self.quads += quad("t%d" % i, i % COLUMNS, i // COLUMNS, 0, 0.05 if i % 3 == 0 else 1)
+            # 32 pixels see a fifth of every third texture, in its finest level, and 1.2 times the others, 19 texels a pixel.
+            self.quads += quad("t%d" % i, i % COLUMNS, i // COLUMNS, 0, 0.05 if i % 3 == 0 else 1.2)
         self.scene = self.write("scene.pbrt", HEADER + self.quads + "WorldEnd\n")
 
     def path(self, name):
