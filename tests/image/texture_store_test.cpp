@@ -95,7 +95,7 @@ TEST(TextureStore, many_threads_decode_once) {
 }
 
 // A 32 x 32 RGB float pyramid has (1024 + 256 + 64 + 16 + 4 + 1) * 12 bytes. While it is made there are the picture in its
-// reader, its rows as they are handed out, at most 32, and 12 rows in the builder.
+// reader, its rows as they are handed out, at most 256, and 12 rows in the builder.
 constexpr size_t kPyramid = 16380, kReading = 12288 + 12288 + 12 * 32 * 12, kMaking = kPyramid + kReading;
 
 TEST(TextureStore, least_recently_used_go_when_memory_is_short) {

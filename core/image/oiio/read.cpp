@@ -51,7 +51,8 @@ std::string header_problem(const OIIO::ImageSpec& spec) {
   return spec.deep ? "deep pictures are not supported" : "";
 }
 
-// Rows are asked for in strips: as many as a tile is high, or as OpenEXR and TIFF files are likely to pack together.
+// Rows are asked for in strips: as many as a tile is high, or some MiB, so that OpenEXR, which packs up to 256 rows together,
+// has something to do for all of its threads.
 class OiioRows : public PictureRows {
  public:
   explicit OiioRows(const std::string& path) {
@@ -64,7 +65,9 @@ class OiioRows : public PictureRows {
     copy_header(spec, info);
     if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
     row_ = static_cast<size_t>(info.width) * info.channels;
-    strip_height_ = std::min(info.height, spec.tile_width > 0 ? spec.tile_height : 32);
+    const size_t rows = kStripBytes / (row_ * sizeof(float)) / 256 * 256;
+    strip_height_ = spec.tile_width > 0 ? spec.tile_height : static_cast<int>(std::max(size_t{256}, rows));
+    strip_height_ = std::min(info.height, strip_height_);
   }
 
   const uint8_t* next_bytes() override {
@@ -84,6 +87,8 @@ class OiioRows : public PictureRows {
   }
 
  private:
+  static constexpr size_t kStripBytes = size_t{16} << 20;
+
   template <class Number>
   const Number* next(std::vector<Number>& strip, OIIO::TypeDesc type) {
     const int in_strip = y_++ % strip_height_;
