@@ -49,7 +49,7 @@ struct Accel::Impl {
   void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
   void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
   template <int N>
-  void occluded(const RayLanes& rays, uint8_t* blocked) const;
+  int occluded(const RayLanes& rays, uint8_t* blocked) const;
   void sweep_instances();
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
@@ -310,7 +310,7 @@ void Accel::intersect(const RayLanes& rays, const Hits& hits, bool coherent) con
 }
 
 template <int N>
-void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
+int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   static_assert(Blockers::kGroup == AnalyticScene::kBlock);
   // Without the hint: shadow rays begin at different surfaces, and end on different points of a light (docs/speed.md).
   EmbreeQuery query(false);
@@ -321,6 +321,7 @@ void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   alignas(64) float t_far[Blockers::kGroup];
+  int clear = 0;
   for (int first = 0; first < rays.n; first += Blockers::kGroup) {
     const int count = std::min(Blockers::kGroup, rays.n - first);
     for (int i = 0; i < count; ++i)
@@ -328,6 +329,7 @@ void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
     ends.lengthen(first, count, t_far);
     if (may_be_clear && blockers.are_clear(rays, first, count, t_far, unshaded_by(rays, first, count))) {
       std::fill_n(blocked + first, count, uint8_t{0});
+      clear += count;
       continue;
     }
     for (int k = 0; k < count; k += N) {
@@ -338,14 +340,15 @@ void Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
     }
     analytic->occluded<N>(rays, first, count, t_far, query, blocked);
   }
+  return clear;
 }
 
-void Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
+int Accel::occluded(const RayLanes& rays, uint8_t* blocked) const {
   if (impl_->record) impl_->record->add(RayKind::Shadow, rays);
   switch (impl_->width) {
-    case 16: impl_->occluded<16>(rays, blocked); break;
-    case 8: impl_->occluded<8>(rays, blocked); break;
-    default: impl_->occluded<4>(rays, blocked); break;
+    case 16: return impl_->occluded<16>(rays, blocked);
+    case 8: return impl_->occluded<8>(rays, blocked);
+    default: return impl_->occluded<4>(rays, blocked);
   }
 }
 

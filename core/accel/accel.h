@@ -92,8 +92,9 @@ class Accel {
 
   /// `coherent`: neighbouring rays are alike (camera rays). Decides the speed, and the rays' kind in a record.
   void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
-  /// Writes 1 where something is hit before t_max, else 0.
-  void occluded(const RayLanes& rays, uint8_t* blocked) const;
+  /// Writes 1 where something is hit before t_max, else 0. Returns for how many rays that was known without tracing them
+  /// (core/accel/blockers.h).
+  int occluded(const RayLanes& rays, uint8_t* blocked) const;
 
   /// What is so near to an emitter that shadow rays must tell it from that: from a triangle of render space, or whatever
   /// is in a box. `corners` is null for a box.

@@ -79,9 +79,8 @@ void Blockers::build() {
       }
     });
   }
-  Box all{kNothingLow, kNothingHigh};
-  for (const Item& item : items_) grow(all, item.box.low, item.box.high);
-  across_ = std::hypot(all.high[0] - all.low[0], all.high[1] - all.low[1], all.high[2] - all.low[2]);
+  all_ = {kNothingLow, kNothingHigh};
+  for (const Item& item : items_) grow(all_, item.box.low, item.box.high);
   if (!items_.empty()) build_node(0, static_cast<int>(items_.size()));
 }
 
@@ -185,29 +184,44 @@ bool Blockers::are_beside(const Shaft& shaft, const Vec3d& n, const Vec3d& a, do
   return in_front == shaft.count || behind == shaft.count;
 }
 
-bool Blockers::are_clear(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by) const {
-  if (nodes_.empty()) return items_.empty();
-  if (!std::isfinite(across_)) return false;
-  Shaft shaft{{kNothingLow, kNothingHigh}, {kNothingLow, kNothingHigh}, rays, first, count, t_far, unshaded_by};
-  const float* const o[3] = {rays.o.x + first, rays.o.y + first, rays.o.z + first};
-  const float* const d[3] = {rays.d.x + first, rays.d.y + first, rays.d.z + first};
+/// The boxes of a shaft: around its rays' origins, and around their ends or where they have left all there is behind.
+/// False for rays that are not finite.
+bool Blockers::set_ends(Shaft& shaft) const {
+  const RayLanes& rays = shaft.rays;
+  const int n = shaft.count;
+  const float* const origin[3] = {rays.o.x + shaft.first, rays.o.y + shaft.first, rays.o.z + shaft.first};
+  const float* const along[3] = {rays.d.x + shaft.first, rays.d.y + shaft.first, rays.d.z + shaft.first};
+  float far = 0;  // squared: from the origins to the corners of all there is
   for (size_t k = 0; k < 3; ++k) {
-    float from_low = kInfinity, from_high = -kInfinity, to_low = kInfinity, to_high = -kInfinity, most = 0;
-    const float *const ok = o[k], *const dk = d[k];
-    const float across = across_;
-#pragma omp simd reduction(min : from_low, to_low) reduction(max : from_high, to_high, most)
-    for (int i = 0; i < count; ++i) {
-      const float t = t_far[i] < across ? t_far[i] : across, end = ok[i] + dk[i] * t;
-      from_low = ok[i] < from_low ? ok[i] : from_low, from_high = ok[i] > from_high ? ok[i] : from_high;
-      to_low = end < to_low ? end : to_low, to_high = end > to_high ? end : to_high;
-      most = t > most ? t : most;
+    float low = kInfinity, high = -kInfinity;
+    const float* const o = origin[k];
+#pragma omp simd reduction(min : low) reduction(max : high)
+    for (int i = 0; i < n; ++i) low = o[i] < low ? o[i] : low, high = o[i] > high ? o[i] : high;
+    shaft.from.low[k] = low, shaft.from.high[k] = high;
+    const float across = std::max(all_.high[k] - low, high - all_.low[k]);
+    far += across * across;
+  }
+  const float reach = 1.01f * std::sqrt(far);
+  for (size_t k = 0; k < 3; ++k) {
+    float low = kInfinity, high = -kInfinity, most = 0;
+    const float *const o = origin[k], *const d = along[k], *const t_far = shaft.t_far;
+#pragma omp simd reduction(min : low) reduction(max : high, most)
+    for (int i = 0; i < n; ++i) {
+      const float t = t_far[i] < reach ? t_far[i] : reach, end = o[i] + d[i] * t;
+      low = end < low ? end : low, high = end > high ? end : high, most = t > most ? t : most;
     }
     // Of the sum, and of the product.
-    const float rounding = 4e-7f * (std::max(std::abs(to_low), std::abs(to_high)) + most);
-    shaft.from.low[k] = from_low, shaft.from.high[k] = from_high;
-    shaft.to.low[k] = to_low - rounding, shaft.to.high[k] = to_high + rounding;
-    if (!(to_low <= to_high) || !(from_low <= from_high)) return false;
+    const float rounding = 4e-7f * (std::max(std::abs(low), std::abs(high)) + most);
+    shaft.to.low[k] = low - rounding, shaft.to.high[k] = high + rounding;
+    if (!(low <= high) || !(shaft.from.low[k] <= shaft.from.high[k])) return false;
   }
+  return std::isfinite(reach);
+}
+
+bool Blockers::are_clear(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by) const {
+  if (nodes_.empty()) return items_.empty();
+  Shaft shaft{{kNothingLow, kNothingHigh}, {kNothingLow, kNothingHigh}, rays, first, count, t_far, unshaded_by};
+  if (!set_ends(shaft)) return false;
   std::array<int32_t, 8 * kMostNodes> waiting;
   size_t n = 1;
   waiting[0] = 0;

@@ -54,6 +54,7 @@ class Blockers {
   struct Shaft;
 
   int build_node(int first, int last);
+  bool set_ends(Shaft& shaft) const;
   static unsigned meets(const Shaft& shaft, const Node& node);
   static bool is_passed(const Item& item, const Shaft& shaft);
   static bool are_beside(const Shaft& shaft, const Vec3d& n, const Vec3d& a, double error);
@@ -61,7 +62,7 @@ class Blockers {
   std::vector<MeshView> meshes_;
   std::vector<Item> items_;
   std::vector<Node> nodes_;
-  float across_ = 0;  ///< All there is, from corner to corner.
+  Box all_{};  ///< Around all there is.
 };
 
 }  // namespace whit

@@ -237,7 +237,7 @@ RGBLanes Tracer::visible(const Points& points, const DirectSamples& samples, con
   if (n == 0 || !scene_.plan.live(Effect::Shadows)) return light;
   const RayLanes rays = shadow_rays(points, samples, lanes, n);
   uint8_t* blocked = arena_.alloc<uint8_t>(n);
-  scene_.accel->occluded(rays, blocked);
+  worker_.statistics.clear_rays += scene_.accel->occluded(rays, blocked);
   worker_.statistics.shadow_rays += n;
   for (int i = 0; i < n; ++i) {
     const int to = lanes[i];

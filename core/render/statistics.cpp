@@ -15,7 +15,7 @@ void RenderStatistics::add(const RenderStatistics& o) {
   camera_samples += o.camera_samples;
   camera_rays += o.camera_rays, reflection_rays += o.reflection_rays, refraction_rays += o.refraction_rays;
   indirect_rays += o.indirect_rays, probe_rays += o.probe_rays;
-  passing_rays += o.passing_rays, shadow_rays += o.shadow_rays;
+  passing_rays += o.passing_rays, shadow_rays += o.shadow_rays, clear_rays += o.clear_rays;
   surface_points += o.surface_points, footprints += o.footprints;
   time_samples += o.time_samples, lens_samples += o.lens_samples;
   texture_values += o.texture_values, alpha_tests += o.alpha_tests;

@@ -12,6 +12,7 @@ struct RenderStatistics {
   int64_t camera_samples = 0;
   int64_t camera_rays = 0, reflection_rays = 0, refraction_rays = 0, indirect_rays = 0;
   int64_t passing_rays = 0, shadow_rays = 0, probe_rays = 0;
+  int64_t clear_rays = 0;  ///< Of the shadow rays: those that were known to meet nothing, and not traced.
   std::array<double, kStages> stage_seconds{};  ///< Over all workers; zero when stages are not timed.
   int64_t surface_points = 0, footprints = 0;
   int64_t time_samples = 0, lens_samples = 0;

@@ -116,10 +116,12 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
   const auto if_any = [](int64_t rays, const char* what) {
     return rays > 0 ? fmt::format(", {} {}", count_text(rays), what) : std::string();
   };
-  say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow{}{}; {:.2f} Mrays/s.",
+  say(fmt::format("{} rays: {} camera, {} reflection, {} refraction, {} shadow{}{}{}; {:.2f} Mrays/s.",
                   count_text(s.rays()), count_text(s.camera_rays), count_text(s.reflection_rays),
-                  count_text(s.refraction_rays), count_text(s.shadow_rays), if_any(s.indirect_rays, "indirect"),
-                  if_any(s.probe_rays, "from lobes to lights"), s.rays() / std::max(1e-9, r.seconds) / 1e6));
+                  count_text(s.refraction_rays), count_text(s.shadow_rays),
+                  s.clear_rays > 0 ? fmt::format(" ({} in the clear)", count_text(s.clear_rays)) : "",
+                  if_any(s.indirect_rays, "indirect"), if_any(s.probe_rays, "from lobes to lights"),
+                  s.rays() / std::max(1e-9, r.seconds) / 1e6));
   const std::string rounding = scene.sampler().rounding();
   say(fmt::format("{:.5g} samples per pixel{}, {} triangles, peak memory {}, invalid samples {}.", r.samples_per_pixel,
                   rounding.empty() ? "" : " (" + rounding + ")",
