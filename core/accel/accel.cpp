@@ -205,7 +205,10 @@ int Accel::add_instance(int group, const std::vector<Affine>& keys) {
   rtcAttachGeometryByID(world.scene, g, static_cast<unsigned>(world.some_geometry));
   rtcReleaseGeometry(g);
   impl_->instance_group.push_back(group);
-  impl_->placed.emplace_back(group, keys);
+  // Among thousands next to nothing is in the clear.
+  constexpr int kMany = 1000;
+  if (index >= kMany) impl_->knows_blockers = false;
+  if (index < kMany || keys.size() > 1) impl_->placed.emplace_back(group, keys);
   impl_->worth += kWorthOfLarge;
   return index;
 }
@@ -321,16 +324,20 @@ int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   alignas(64) float t_far[Blockers::kGroup];
-  int clear = 0;
+  // Where groups are not in the clear their neighbours are not: after each the next are not asked, one, three, seven ...
+  int clear = 0, unasked = 0, patience = 0;
   for (int first = 0; first < rays.n; first += Blockers::kGroup) {
     const int count = std::min(Blockers::kGroup, rays.n - first);
     for (int i = 0; i < count; ++i)
       t_far[i] = rays.t_max ? rays.t_max[first + i] : std::numeric_limits<float>::infinity();
     ends.lengthen(first, count, t_far);
-    if (may_be_clear && blockers.are_clear(rays, first, count, t_far, unshaded_by(rays, first, count))) {
-      std::fill_n(blocked + first, count, uint8_t{0});
-      clear += count;
-      continue;
+    if (may_be_clear && unasked-- == 0) {
+      if (blockers.are_clear(rays, first, count, t_far, unshaded_by(rays, first, count))) {
+        std::fill_n(blocked + first, count, uint8_t{0});
+        clear += count, unasked = patience = 0;
+        continue;
+      }
+      unasked = patience = 2 * patience + 1;
     }
     for (int k = 0; k < count; k += N) {
       const int here = std::min(N, count - k);

@@ -46,10 +46,12 @@ void AnalyticScene::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuer
   alignas(64) int valid[N];
   int32_t lanes[kBlock];
   for (int first = 0; first < rays.n; first += kBlock) {
-    const int n = reaching(rays, first, std::min(kBlock, rays.n - first), hits.t + first, kNobody, lanes);
+    const int here = std::min(kBlock, rays.n - first);
+    const int n = reaching(rays, first, here, hits.t + first, kNobody, lanes);
     for (int k = 0; k < n; k += N) {
       const int count = std::min(N, n - k);
-      load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
+      if (n == here) load_packet<N>(rays, LanesFrom{first + k}, count, hits.t, packet.ray, valid);
+      else load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
       no_hits<N>(packet.hit);
       query.trace(valid, scene_, packet);
       for (int i = 0; i < count; ++i) {
@@ -75,7 +77,8 @@ void AnalyticScene::occluded(const RayLanes& rays, int first, int count, const f
   const int n = reaching(rays, first, count, left, unshaded_by(rays, first, count), lanes);
   for (int k = 0; k < n; k += N) {
     const int here = std::min(N, n - k);
-    load_packet<N>(rays, LanesOf{lanes + k}, here, t_far - first, packet, valid);
+    if (n == count) load_packet<N>(rays, LanesFrom{first + k}, here, t_far - first, packet, valid);
+    else load_packet<N>(rays, LanesOf{lanes + k}, here, t_far - first, packet, valid);
     query.trace(valid, scene_, packet);
     for (int i = 0; i < here; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
   }

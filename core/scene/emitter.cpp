@@ -58,6 +58,9 @@ Vec3d rounding_of_corners(const Mesh& mesh, uint32_t prim) {
   return rounding_of(farthest_of(box));
 }
 
+/// Of lengths and distances, how far the ray tracer's planes may be off (core/accel/ray_end.h).
+constexpr float kPlaneOff = 6e-7f;
+
 /// Where a shadow ray stops in front of an emitting triangle and of what else lies in its plane, when the ray tracer's
 /// planes are off by `error` at most.
 inline float in_front(float distance, float error, float cosine) {
@@ -138,7 +141,7 @@ void TriangleEmitter::sample(const LightSamples& samples) const {
   const Vec3f error =
       (Vec3f(std::abs(a.x), std::abs(a.y), std::abs(a.z)) + Vec3f(std::abs(b.x), std::abs(b.y), std::abs(b.z)) +
        Vec3f(std::abs(c.x), std::abs(c.y), std::abs(c.z))) *
-      6e-7f;
+      kPlaneOff;
   // Where more than its own plane is near, rays end on the triangle, and the ray tracer decides what is before them.
   const bool touched = static_cast<bool>(samples.q);
   const float back = touched ? 0.0f : std::abs(n.x) * error.x + std::abs(n.y) * error.y + std::abs(n.z) * error.z;
@@ -146,6 +149,9 @@ void TriangleEmitter::sample(const LightSamples& samples) const {
   const Vec3f rounding(rounding_of_corners(mesh, prim_) * 2.0);  // the triangle's and the point's
   const float off = std::abs(n.x) * rounding.x + std::abs(n.y) * rounding.y + std::abs(n.z) * rounding.z;
   const float unsure = touched ? off : 0.0f;
+  // The ray tracer takes the corners relative to where the ray begins: what is far away is off by more.
+  const float across = std::sqrt(max_of(max_of(dot(b - a, b - a), dot(c - b, c - b)), dot(a - c, a - c)));
+  const float of_distance = touched ? 0.0f : kPlaneOff;
   const LightSamples out = samples;
   const auto sample = [=]<bool kDensity>(std::bool_constant<kDensity>, int i) {
     const float root = safe_sqrt(out.u[i]);
@@ -167,7 +173,7 @@ void TriangleEmitter::sample(const LightSamples& samples) const {
         ((cosine > 0) | (two_sided & (cosine < 0))) & (squared > 0) & !(std::abs(cosine) * distance < unsure);
     const float geometry = lit ? std::abs(cosine) * area / squared : 0.0f;
     out.wi.set(i, wi);
-    out.distance[i] = in_front(distance, back, cosine);
+    out.distance[i] = in_front(distance, back + of_distance * (distance + across), cosine);
     out.radiance.set(i, {radiance.x * geometry, radiance.y * geometry, radiance.z * geometry});
     if constexpr (kDensity) out.pdf[i] = lit ? 1 / geometry : 0.0f;
   };
