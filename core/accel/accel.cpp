@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <optional>
 
@@ -44,7 +45,8 @@ struct Accel::Impl {
   std::string error;
 
   template <int N>
-  void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first) const;
+  void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, bool also_analytic, int first,
+                 int last) const;
   template <int N>
   void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
   void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
@@ -254,16 +256,18 @@ std::string Accel::watch_ends() {
   return impl_->problem();
 }
 
-/// The hits of up to N rays from `first` on.
+/// The hits of rays [first, last), at most N.
 template <int N>
-void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first) const {
+void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, bool also_analytic, int first,
+                            int last) const {
   const int world_first = groups[kWorld].first_shape, world_shapes = groups[kWorld].shape_count;
-  const int count = std::min(N, rays.n - first);
+  const int count = last - first;
   alignas(64) typename Packets<N>::RayHit packet;
   alignas(64) int valid[N];
   load_packet<N>(rays, LanesFrom{first}, count, rays.t_max, packet.ray, valid);
   no_hits<N>(packet.hit);
   query.trace(valid, groups[kWorld].scene, packet);
+  if (also_analytic) query.trace(valid, analytic->scene(), packet);
   copy_lanes<N>(hits.t + first, packet.ray.tfar, count);
   copy_lanes<N>(hits.u + first, packet.hit.u, count);
   copy_lanes<N>(hits.v + first, packet.hit.v, count);
@@ -280,14 +284,21 @@ void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery&
 
 template <int N>
 void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, bool coherent) const {
-  const bool alike = coherent || worth <= small_scene;
+  static_assert(kStream == AnalyticScene::kBlock);
+  const bool alike = coherent || worth <= small_scene, may_stream = kHasStreams && alike && instance_group.empty();
   EmbreeQuery query(alike);
-  int first = 0;
-  if (kHasStreams && alike && instance_group.empty()) {
-    for (; rays.n - first > N; first += kStream) intersect<kStream>(rays, hits, query, first);
+  int32_t lanes[kStream];
+  for (int first = 0; first < rays.n; first += kStream) {
+    const int last = std::min(first + kStream, rays.n), count = last - first;
+    const int near = analytic->reaching(rays, first, count, rays.t_max ? rays.t_max + first : nullptr, kNobody, lanes);
+    const bool all = AnalyticScene::are_most(near, count);
+    if (may_stream && !all && count > N) {
+      intersect<kStream>(rays, hits, query, false, first, last);
+    } else {
+      for (int k = first; k < last; k += N) intersect<N>(rays, hits, query, all, k, std::min(k + N, last));
+    }
+    if (!all) analytic->intersect<N>(rays, lanes, near, hits, query, groups[kWorld].first_shape);
   }
-  for (; first < rays.n; first += N) intersect<N>(rays, hits, query, first);
-  analytic->intersect<N>(rays, hits, query, groups[kWorld].first_shape);
 }
 
 void Accel::Impl::intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const {
@@ -324,6 +335,7 @@ int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   alignas(64) float t_far[Blockers::kGroup];
+  int32_t lanes[Blockers::kGroup];
   // Where groups are not in the clear their neighbours are not: after each the next are not asked, one, three, seven ...
   int clear = 0, unasked = 0, patience = 0;
   for (int first = 0; first < rays.n; first += Blockers::kGroup) {
@@ -339,13 +351,18 @@ int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
       }
       unasked = patience = 2 * patience + 1;
     }
+    int near = analytic->reaching(rays, first, count, t_far, unshaded_by(rays, first, count), lanes);
+    const bool all = AnalyticScene::are_most(near, count);
     for (int k = 0; k < count; k += N) {
       const int here = std::min(N, count - k);
       load_packet<N>(rays, LanesFrom{first + k}, here, t_far - first, packet, valid);
       query.trace(valid, groups[kWorld].scene, packet);
+      if (all) query.trace(valid, analytic->scene(), packet);
       for (int i = 0; i < here; ++i) blocked[first + k + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
     }
-    analytic->occluded<N>(rays, first, count, t_far, query, blocked);
+    if (all) continue;
+    near = static_cast<int>(std::remove_if(lanes, lanes + near, [&](int32_t i) { return blocked[i] != 0; }) - lanes);
+    analytic->occluded<N>(rays, lanes, near, t_far - first, query, blocked);
   }
   return clear;
 }

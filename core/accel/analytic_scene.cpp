@@ -18,14 +18,19 @@ void AnalyticScene::add_box(const RTCBounds& bounds, int unshaded_by_itself) {
   boxes_.assign(1, {all, kEveryone});
 }
 
-/// The lanes among [first, first + count) that reach some box within [0, t_far], which has a value for each of them. A
-/// NaN counts as reaching, and boxes are as wide as Embree's robust traversal makes them.
+/// A NaN counts as reaching, and boxes are as wide as Embree's robust traversal makes them.
 int AnalyticScene::reaching(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by,
                             int32_t* lanes) const {
+  if (empty()) return 0;
   alignas(64) float inverse[3][kBlock];
   alignas(64) int32_t reached[kBlock];
   const Vec3Lanes o = rays.o.from(first), d = rays.d.from(first), one_over{inverse[0], inverse[1], inverse[2]};
   for_lanes(count, [&](int i) { one_over.set(i, {1 / d.x[i], 1 / d.y[i], 1 / d.z[i]}), reached[i] = 0; });
+  alignas(64) float endless[kBlock];
+  if (!t_far) {
+    std::fill_n(endless, count, std::numeric_limits<float>::infinity());
+    t_far = endless;
+  }
   for (const Reach& reach : boxes_) {
     if (reach.unshaded_by_itself == unshaded_by) continue;
     const RTCBounds box = reach.bounds;
@@ -40,55 +45,46 @@ int AnalyticScene::reaching(const RayLanes& rays, int first, int count, const fl
 }
 
 template <int N>
-void AnalyticScene::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first_shape) const {
-  if (empty()) return;
+void AnalyticScene::intersect(const RayLanes& rays, const int32_t* lanes, int n, const Hits& hits, EmbreeQuery& query,
+                              int first_shape) const {
   alignas(64) typename Packets<N>::RayHit packet;
   alignas(64) int valid[N];
-  int32_t lanes[kBlock];
-  for (int first = 0; first < rays.n; first += kBlock) {
-    const int here = std::min(kBlock, rays.n - first);
-    const int n = reaching(rays, first, here, hits.t + first, kNobody, lanes);
-    for (int k = 0; k < n; k += N) {
-      const int count = std::min(N, n - k);
-      if (n == here) load_packet<N>(rays, LanesFrom{first + k}, count, hits.t, packet.ray, valid);
-      else load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
-      no_hits<N>(packet.hit);
-      query.trace(valid, scene_, packet);
-      for (int i = 0; i < count; ++i) {
-        if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
-        const int to = lanes[k + i];
-        hits.t[to] = packet.ray.tfar[i], hits.u[to] = packet.hit.u[i], hits.v[to] = packet.hit.v[i];
-        hits.prim[to] = packet.hit.primID[i], hits.instance[to] = -1;
-        hits.shape[to] = static_cast<int32_t>(packet.hit.geomID[i]) + first_shape;
-      }
+  for (int k = 0; k < n; k += N) {
+    const int count = std::min(N, n - k);
+    load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
+    no_hits<N>(packet.hit);
+    query.trace(valid, scene_, packet);
+    for (int i = 0; i < count; ++i) {
+      if (packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+      const int to = lanes[k + i];
+      hits.t[to] = packet.ray.tfar[i], hits.u[to] = packet.hit.u[i], hits.v[to] = packet.hit.v[i];
+      hits.prim[to] = packet.hit.primID[i], hits.instance[to] = -1;
+      hits.shape[to] = static_cast<int32_t>(packet.hit.geomID[i]) + first_shape;
     }
   }
 }
 
 template <int N>
-void AnalyticScene::occluded(const RayLanes& rays, int first, int count, const float* t_far, EmbreeQuery& query,
+void AnalyticScene::occluded(const RayLanes& rays, const int32_t* lanes, int n, const float* t_far, EmbreeQuery& query,
                              uint8_t* blocked) const {
-  if (empty()) return;
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
-  alignas(64) float left[kBlock];
-  int32_t lanes[kBlock];
-  for (int i = 0; i < count; ++i) left[i] = blocked[first + i] ? -1.0f : t_far[i];
-  const int n = reaching(rays, first, count, left, unshaded_by(rays, first, count), lanes);
   for (int k = 0; k < n; k += N) {
-    const int here = std::min(N, n - k);
-    if (n == count) load_packet<N>(rays, LanesFrom{first + k}, here, t_far - first, packet, valid);
-    else load_packet<N>(rays, LanesOf{lanes + k}, here, t_far - first, packet, valid);
+    const int count = std::min(N, n - k);
+    load_packet<N>(rays, LanesOf{lanes + k}, count, t_far, packet, valid);
     query.trace(valid, scene_, packet);
-    for (int i = 0; i < here; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
+    for (int i = 0; i < count; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
   }
 }
 
-template void AnalyticScene::intersect<4>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
-template void AnalyticScene::intersect<8>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
-template void AnalyticScene::intersect<16>(const RayLanes&, const Hits&, EmbreeQuery&, int) const;
-template void AnalyticScene::occluded<4>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
-template void AnalyticScene::occluded<8>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
-template void AnalyticScene::occluded<16>(const RayLanes&, int, int, const float*, EmbreeQuery&, uint8_t*) const;
+template void AnalyticScene::intersect<4>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
+template void AnalyticScene::intersect<8>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
+template void AnalyticScene::intersect<16>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
+template void AnalyticScene::occluded<4>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+                                         uint8_t*) const;
+template void AnalyticScene::occluded<8>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+                                         uint8_t*) const;
+template void AnalyticScene::occluded<16>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+                                          uint8_t*) const;
 
 }  // namespace whit

@@ -23,16 +23,23 @@ class AnalyticScene {
   /// Of a shape that was attached to the scene; `unshaded_by_itself` as in GeometryUser.
   void add_box(const RTCBounds& bounds, int unshaded_by_itself);
 
-  /// Replaces hits by nearer ones on the analytic shapes; geometry 0 of the scene has number first_shape.
+  /// Those of rays [first, first + count), at most kBlock, that reach the box of a shape within t_far, which has a value
+  /// for each of them (null: infinite): how many, and their lanes. The shape `unshaded_by` does not count.
+  int reaching(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by, int32_t* lanes) const;
+
+  /// Replaces the hits of n lanes by nearer ones on the analytic shapes; geometry 0 of the scene has number first_shape.
   template <int N>
-  void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, int first_shape) const;
-  /// Writes 1 for those of rays [first, first + count), at most kBlock, that hit an analytic shape before t_far, which has
-  /// a value for each of them, and leaves the rest.
+  void intersect(const RayLanes& rays, const int32_t* lanes, int n, const Hits& hits, EmbreeQuery& query,
+                 int first_shape) const;
+  /// Writes 1 for those of n lanes that hit an analytic shape before their ends in t_far, and leaves the rest.
   template <int N>
-  void occluded(const RayLanes& rays, int first, int count, const float* t_far, EmbreeQuery& query,
+  void occluded(const RayLanes& rays, const int32_t* lanes, int n, const float* t_far, EmbreeQuery& query,
                 uint8_t* blocked) const;
 
   static constexpr int kBlock = 64;  ///< Rays that are asked together.
+
+  /// Whether so many lanes of a block are as good as all: then packets of them are traced as they are.
+  static bool are_most(int n, int count) { return 4 * n >= 3 * count; }
 
  private:
   static constexpr size_t kFew = 8;  ///< So many boxes are looked at one by one; of more, the box around all.
@@ -40,8 +47,6 @@ class AnalyticScene {
     RTCBounds bounds;
     int unshaded_by_itself;
   };
-
-  int reaching(const RayLanes& rays, int first, int count, const float* t_far, int unshaded_by, int32_t* lanes) const;
 
   RTCScene scene_;
   std::vector<Reach> boxes_;
