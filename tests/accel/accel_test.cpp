@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
+#include "core/accel/embree.h"
 #include "core/accel/replay.h"
 #include "tests/accel/instruction_sets.h"
 
@@ -144,6 +146,72 @@ TEST(Accel, FewAndManyAnalyticShapesAreMetAmongTriangles) {
       }
     }
   }
+}
+
+/// What tracing every ray by itself says, without looking at groups.
+std::vector<uint8_t> traced_one_by_one(const Accel& accel, Rays& rays) {
+  std::vector<uint8_t> blocked(rays.t.size());
+  EmbreeQuery query(false);
+  for (size_t i = 0; i < blocked.size(); ++i) {
+    for (void* scene : accel.embree_scenes()) {
+      RTCRay r{};
+      r.org_x = rays.o[0][i], r.org_y = rays.o[1][i], r.org_z = rays.o[2][i];
+      r.dir_x = rays.d[0][i], r.dir_y = rays.d[1][i], r.dir_z = rays.d[2][i];
+      r.tfar = rays.t_max[i], r.mask = ~0u;
+      query.trace(nullptr, static_cast<RTCScene>(scene), r);
+      blocked[i] |= r.tfar < 0;
+    }
+  }
+  return blocked;
+}
+
+TEST(Accel, GroupsInTheClearAreFreeRayByRay) {
+  // Floors of all slopes, whose rays leave by a few roundings, a cloud of triangles over them, and a plate: a picture must
+  // not depend on whether its rays were traced or known to be in the clear.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> u(-1, 1);
+  int clear = 0, free_rays = 0, blocked_rays = 0;
+  for (int round = 0; round < 200; ++round) {
+    const float slope = u(random), far = 4 + 40 * std::abs(u(random));
+    const auto height = [slope](float x) { return slope * x; };
+    std::vector<float> floor;
+    for (const auto& [x, y] : {std::pair(-8.0f, -8.0f), {8.0f, -8.0f}, {8.0f, 8.0f}, {-8.0f, 8.0f}})
+      floor.insert(floor.end(), {x, y, height(x)});
+    std::vector<uint32_t> quad{0, 1, 2, 0, 2, 3}, cloud_indices;
+    std::vector<float> cloud;
+    for (uint32_t i = 0; i < 300; ++i) {
+      const Vec3f at(4 * u(random), 4 * u(random), 10 + 3 * u(random));
+      for (int k = 0; k < 3; ++k) {
+        for (int c = 0; c < 3; ++c) cloud.push_back(at[c] + 0.2f * u(random));
+        cloud_indices.push_back(3 * i + static_cast<uint32_t>(k));
+      }
+    }
+    floor.push_back(0), cloud.push_back(0);
+    Plate plate(0.5);
+    plate.place(Mat4d().setTranslation(Vec3d(3, 0, 9)), false);
+    Accel accel({.robust = true, .small_scene = 0});
+    accel.add_mesh(Accel::kWorld, {floor.data(), 4, quad.data(), 2}, 0, nullptr);
+    accel.add_mesh(Accel::kWorld, {cloud.data(), 900, cloud_indices.data(), 300}, 1, nullptr);
+    accel.add_analytic(Accel::kWorld, plate, 2, nullptr);
+    ASSERT_EQ(accel.build(), "");
+    const Vec3f lamp(6 * u(random), 6 * u(random), far);
+    Rays rays(300);
+    for (size_t i = 0; i < 300; ++i) {
+      // Stretches of 64 leave from one patch.
+      const float patch = static_cast<float>(i / 64) - 2, x = patch + 0.3f * u(random), y = 0.3f * u(random);
+      const Vec3f from(x, y, height(x) + 2e-6f), to = lamp + Vec3f(u(random), u(random), u(random)) * 0.5f;
+      const Vec3f way = to - from;
+      const float distance = std::sqrt(way.dot(way));
+      rays.set(i, from, way * (1 / distance));
+      rays.t_max[i] = round % 4 ? distance : kInfinity;
+    }
+    clear += accel.occluded(rays.lanes(), rays.blocked.data());
+    EXPECT_EQ(rays.blocked, traced_one_by_one(accel, rays)) << round;
+    for (const uint8_t b : rays.blocked) ++(b ? blocked_rays : free_rays);
+  }
+  EXPECT_GT(clear, 1000);
+  EXPECT_GT(free_rays - clear, 5000);
+  EXPECT_GT(blocked_rays, 500);
 }
 
 TEST(Accel, NothingAtAllIsHitByNothing) {
