@@ -1,6 +1,6 @@
 // The world's analytic shapes, in an Embree scene of their own beside that of the triangles. Embree keeps them in a tree
-// of their own in any case and walks it for every ray: a lamp alone was a quarter of the render of a mesh under it. Here
-// rays are first asked for the boxes of the shapes, all rays of a batch at once, and few are left to be traced.
+// of their own in any case and walks it for every ray. Here rays are first asked for the boxes of the shapes, 64 at once,
+// and few are left to be traced: of those to a lamp, none for the lamp's own sake.
 #pragma once
 
 #include <vector>
