@@ -67,7 +67,7 @@ inline float irradiance_from(const LightBall& b, const Vec3f& p) {
   const float toward = dot(b.mean, to) * inverse, middle = b.fronts > 1 ? std::abs(toward) : toward;
   const float off = kOfVariance * (b.vary + kOfBall * min_of(sin_ball * sin_ball, 1.0f));
   const float average = 0.5f * (middle + safe_sqrt(middle * middle + off));
-  const float of_ball = (b.vary >= 0) & (most >= b.cos_edge) ? average : most;
+  const float of_ball = ((b.vary >= 0) & (most >= b.cos_edge)) ? average : most;
   // What is flat does not light itself, nor what lies in its plane.
   const float of_plane = min_of(of_ball, height * b.slab);
   const float turned = b.slab > 0 ? of_plane : of_ball;
