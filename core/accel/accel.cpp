@@ -264,7 +264,7 @@ void Accel::Impl::intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery&
   const int count = last - first;
   alignas(64) typename Packets<N>::RayHit packet;
   alignas(64) int valid[N];
-  load_packet<N>(rays, LanesFrom{first}, count, rays.t_max, packet.ray, valid);
+  load_packet<N>(rays, LanesFrom{first}, count, {rays.t_max, 0}, packet.ray, valid);
   no_hits<N>(packet.hit);
   query.trace(valid, groups[kWorld].scene, packet);
   if (also_analytic) query.trace(valid, analytic->scene(), packet);
@@ -355,14 +355,14 @@ int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
     const bool all = AnalyticScene::are_most(near, count);
     for (int k = 0; k < count; k += N) {
       const int here = std::min(N, count - k);
-      load_packet<N>(rays, LanesFrom{first + k}, here, t_far - first, packet, valid);
+      load_packet<N>(rays, LanesFrom{first + k}, here, {t_far, first}, packet, valid);
       query.trace(valid, groups[kWorld].scene, packet);
       if (all) query.trace(valid, analytic->scene(), packet);
       for (int i = 0; i < here; ++i) blocked[first + k + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
     }
     if (all) continue;
     near = static_cast<int>(std::remove_if(lanes, lanes + near, [&](int32_t i) { return blocked[i] != 0; }) - lanes);
-    analytic->occluded<N>(rays, lanes, near, t_far - first, query, blocked);
+    analytic->occluded<N>(rays, lanes, near, {t_far, first}, query, blocked);
   }
   return clear;
 }

@@ -51,7 +51,7 @@ void AnalyticScene::intersect(const RayLanes& rays, const int32_t* lanes, int n,
   alignas(64) int valid[N];
   for (int k = 0; k < n; k += N) {
     const int count = std::min(N, n - k);
-    load_packet<N>(rays, LanesOf{lanes + k}, count, hits.t, packet.ray, valid);
+    load_packet<N>(rays, LanesOf{lanes + k}, count, {hits.t, 0}, packet.ray, valid);
     no_hits<N>(packet.hit);
     query.trace(valid, scene_, packet);
     for (int i = 0; i < count; ++i) {
@@ -65,13 +65,13 @@ void AnalyticScene::intersect(const RayLanes& rays, const int32_t* lanes, int n,
 }
 
 template <int N>
-void AnalyticScene::occluded(const RayLanes& rays, const int32_t* lanes, int n, const float* t_far, EmbreeQuery& query,
-                             uint8_t* blocked) const {
+void AnalyticScene::occluded(const RayLanes& rays, const int32_t* lanes, int n, const LaneEnds& ends,
+                             EmbreeQuery& query, uint8_t* blocked) const {
   alignas(64) typename Packets<N>::Ray packet;
   alignas(64) int valid[N];
   for (int k = 0; k < n; k += N) {
     const int count = std::min(N, n - k);
-    load_packet<N>(rays, LanesOf{lanes + k}, count, t_far, packet, valid);
+    load_packet<N>(rays, LanesOf{lanes + k}, count, ends, packet, valid);
     query.trace(valid, scene_, packet);
     for (int i = 0; i < count; ++i) blocked[lanes[k + i]] |= (valid[i] != 0) & (packet.tfar[i] < 0);
   }
@@ -80,11 +80,11 @@ void AnalyticScene::occluded(const RayLanes& rays, const int32_t* lanes, int n, 
 template void AnalyticScene::intersect<4>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
 template void AnalyticScene::intersect<8>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
 template void AnalyticScene::intersect<16>(const RayLanes&, const int32_t*, int, const Hits&, EmbreeQuery&, int) const;
-template void AnalyticScene::occluded<4>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+template void AnalyticScene::occluded<4>(const RayLanes&, const int32_t*, int, const LaneEnds&, EmbreeQuery&,
                                          uint8_t*) const;
-template void AnalyticScene::occluded<8>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+template void AnalyticScene::occluded<8>(const RayLanes&, const int32_t*, int, const LaneEnds&, EmbreeQuery&,
                                          uint8_t*) const;
-template void AnalyticScene::occluded<16>(const RayLanes&, const int32_t*, int, const float*, EmbreeQuery&,
+template void AnalyticScene::occluded<16>(const RayLanes&, const int32_t*, int, const LaneEnds&, EmbreeQuery&,
                                           uint8_t*) const;
 
 }  // namespace whit

@@ -31,9 +31,9 @@ class AnalyticScene {
   template <int N>
   void intersect(const RayLanes& rays, const int32_t* lanes, int n, const Hits& hits, EmbreeQuery& query,
                  int first_shape) const;
-  /// Writes 1 for those of n lanes that hit an analytic shape before their ends in t_far, and leaves the rest.
+  /// Writes 1 for those of n lanes that hit an analytic shape before their ends, and leaves the rest.
   template <int N>
-  void occluded(const RayLanes& rays, const int32_t* lanes, int n, const float* t_far, EmbreeQuery& query,
+  void occluded(const RayLanes& rays, const int32_t* lanes, int n, const LaneEnds& ends, EmbreeQuery& query,
                 uint8_t* blocked) const;
 
   static constexpr int kBlock = 64;  ///< Rays that are asked together.

@@ -50,6 +50,12 @@ struct LanesOf {
   int operator[](int i) const { return list[i]; }
 };
 
+/// Where rays end: values of the lanes from `first` on; null: nowhere.
+struct LaneEnds {
+  const float* t = nullptr;
+  int first = 0;
+};
+
 /// Copies `count` of up to N values from lanes of an array.
 template <int N, class T>
 void take_lanes(T* to, const T* from, LanesFrom lanes, int count) {
@@ -58,6 +64,15 @@ void take_lanes(T* to, const T* from, LanesFrom lanes, int count) {
 template <int N, class T>
 void take_lanes(T* to, const T* from, LanesOf lanes, int count) {
   for (int i = 0; i < count; ++i) to[i] = from[lanes[i]];
+}
+
+template <int N>
+void take_ends(float* to, const LaneEnds& ends, LanesFrom lanes, int count) {
+  copy_lanes<N>(to, ends.t + (lanes.first - ends.first), count);
+}
+template <int N>
+void take_ends(float* to, const LaneEnds& ends, LanesOf lanes, int count) {
+  for (int i = 0; i < count; ++i) to[i] = ends.t[lanes[i] - ends.first];
 }
 
 /// Makes all hits of a packet misses.
@@ -69,10 +84,10 @@ void no_hits(Hit& hit) {
   }
 }
 
-/// Fills one packet from `count` lanes, with ends t_max (null: infinite) by lane. Lanes beyond count and rays that are not usable are switched off
+/// Fills one packet from `count` lanes, with their ends. Lanes beyond count and rays that are not usable are switched off
 /// by `valid`, and are such that nothing happens to them should Embree look at them all the same.
 template <int N, class Lanes, class Packet>
-void load_packet(const RayLanes& rays, Lanes lanes, int count, const float* t_max, Packet& ray, int* valid) {
+void load_packet(const RayLanes& rays, Lanes lanes, int count, const LaneEnds& ends, Packet& ray, int* valid) {
   const auto copy = [&](float* to, const float* from) { take_lanes<N>(to, from, lanes, count); };
   copy(ray.org_x, rays.o.x), copy(ray.org_y, rays.o.y), copy(ray.org_z, rays.o.z);
   copy(ray.dir_x, rays.d.x), copy(ray.dir_y, rays.d.y), copy(ray.dir_z, rays.d.z);
@@ -84,7 +99,7 @@ void load_packet(const RayLanes& rays, Lanes lanes, int count, const float* t_ma
     ray.flags[i] = 0;
   }
   for (int i = 0; i < count; ++i) ray.id[i] = static_cast<unsigned>(lanes[i]);
-  if (t_max) copy(ray.tfar, t_max);
+  if (ends.t) take_ends<N>(ray.tfar, ends, lanes, count);
   if (rays.time) copy(ray.time, rays.time);
   for (int i = 0; i < N; ++i) {
     const Vec3f o(ray.org_x[i], ray.org_y[i], ray.org_z[i]), d(ray.dir_x[i], ray.dir_y[i], ray.dir_z[i]);
