@@ -51,6 +51,9 @@ struct Accel::Impl {
   void intersect(const RayLanes& rays, const Hits& hits, bool coherent) const;
   void intersect_packets(const RayLanes& rays, const Hits& hits, bool coherent) const;
   template <int N>
+  void trace_block(const RayLanes& rays, int first, int count, const float* t_far, int unshaded, EmbreeQuery& query,
+                   uint8_t* blocked) const;
+  template <int N>
   int occluded(const RayLanes& rays, uint8_t* blocked) const;
   void sweep_instances();
 
@@ -323,6 +326,28 @@ void Accel::intersect(const RayLanes& rays, const Hits& hits, bool coherent) con
   }
 }
 
+/// Writes 1 where rays [first, first + count), at most a block, are blocked before t_far, which has a value for each of
+/// them, else 0.
+template <int N>
+void Accel::Impl::trace_block(const RayLanes& rays, int first, int count, const float* t_far, int unshaded,
+                              EmbreeQuery& query, uint8_t* blocked) const {
+  alignas(64) typename Packets<N>::Ray packet;
+  alignas(64) int valid[N];
+  int32_t lanes[AnalyticScene::kBlock];
+  int near = analytic->reaching(rays, first, count, t_far, unshaded, lanes);
+  const bool all = AnalyticScene::are_most(near, count);
+  for (int k = 0; k < count; k += N) {
+    const int here = std::min(N, count - k);
+    load_packet<N>(rays, LanesFrom{first + k}, here, {t_far, first}, packet, valid);
+    query.trace(valid, groups[kWorld].scene, packet);
+    if (all) query.trace(valid, analytic->scene(), packet);
+    for (int i = 0; i < here; ++i) blocked[first + k + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
+  }
+  if (all) return;
+  near = static_cast<int>(std::remove_if(lanes, lanes + near, [&](int32_t i) { return blocked[i] != 0; }) - lanes);
+  analytic->occluded<N>(rays, lanes, near, {t_far, first}, query, blocked);
+}
+
 template <int N>
 int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   static_assert(Blockers::kGroup == AnalyticScene::kBlock);
@@ -332,37 +357,24 @@ int Accel::Impl::occluded(const RayLanes& rays, uint8_t* blocked) const {
   const ShadowEnds ends(rays);
   if (ends.any) query.set_shadow(&shadow, ends.touched ? end_filter : nullptr);
   const bool may_be_clear = knows_blockers && !ends.touched;
-  alignas(64) typename Packets<N>::Ray packet;
-  alignas(64) int valid[N];
   alignas(64) float t_far[Blockers::kGroup];
-  int32_t lanes[Blockers::kGroup];
   // Where groups are not in the clear their neighbours are not: after each the next are not asked, one, three, seven ...
   int clear = 0, unasked = 0, patience = 0;
   for (int first = 0; first < rays.n; first += Blockers::kGroup) {
     const int count = std::min(Blockers::kGroup, rays.n - first);
-    for (int i = 0; i < count; ++i)
-      t_far[i] = rays.t_max ? rays.t_max[first + i] : std::numeric_limits<float>::infinity();
+    if (rays.t_max) std::copy_n(rays.t_max + first, count, t_far);
+    else std::fill_n(t_far, count, std::numeric_limits<float>::infinity());
     ends.lengthen(first, count, t_far);
+    const int unshaded = unshaded_by(rays, first, count);
     if (may_be_clear && unasked-- == 0) {
-      if (blockers.are_clear(rays, first, count, t_far, unshaded_by(rays, first, count))) {
+      if (blockers.are_clear(rays, first, count, t_far, unshaded)) {
         std::fill_n(blocked + first, count, uint8_t{0});
         clear += count, unasked = patience = 0;
         continue;
       }
       unasked = patience = 2 * patience + 1;
     }
-    int near = analytic->reaching(rays, first, count, t_far, unshaded_by(rays, first, count), lanes);
-    const bool all = AnalyticScene::are_most(near, count);
-    for (int k = 0; k < count; k += N) {
-      const int here = std::min(N, count - k);
-      load_packet<N>(rays, LanesFrom{first + k}, here, {t_far, first}, packet, valid);
-      query.trace(valid, groups[kWorld].scene, packet);
-      if (all) query.trace(valid, analytic->scene(), packet);
-      for (int i = 0; i < here; ++i) blocked[first + k + i] = (valid[i] != 0) & (packet.tfar[i] < 0);
-    }
-    if (all) continue;
-    near = static_cast<int>(std::remove_if(lanes, lanes + near, [&](int32_t i) { return blocked[i] != 0; }) - lanes);
-    analytic->occluded<N>(rays, lanes, near, {t_far, first}, query, blocked);
+    trace_block<N>(rays, first, count, t_far, unshaded, query, blocked);
   }
   return clear;
 }

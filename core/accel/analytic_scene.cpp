@@ -8,14 +8,14 @@ namespace whit {
 
 void AnalyticScene::add_box(const RTCBounds& bounds, int unshaded_by_itself) {
   boxes_.push_back({bounds, unshaded_by_itself});
-  if (++count_ <= kFew) return;
+  if (boxes_.size() <= kFew) return;
   RTCBounds all = boxes_.front().bounds;
   for (const Reach& box : boxes_) {
     const RTCBounds& b = box.bounds;
     all = {std::min(all.lower_x, b.lower_x), std::min(all.lower_y, b.lower_y), std::min(all.lower_z, b.lower_z), 0,
            std::max(all.upper_x, b.upper_x), std::max(all.upper_y, b.upper_y), std::max(all.upper_z, b.upper_z), 0};
   }
-  boxes_.assign(1, {all, kEveryone});
+  boxes_.assign(1, {all, kShadesItself});
 }
 
 /// A NaN counts as reaching, and boxes are as wide as Embree's robust traversal makes them.

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "core/accel/embree_geometry.h"
 #include "core/accel/packets.h"
 #include "core/accel/shadow_rays.h"
 
@@ -42,7 +43,7 @@ class AnalyticScene {
   static bool are_most(int n, int count) { return 4 * n >= 3 * count; }
 
  private:
-  static constexpr size_t kFew = 8;  ///< So many boxes are looked at one by one; of more, the box around all.
+  static constexpr size_t kFew = 8;  ///< So many boxes are looked at one by one; more are joined to one.
   struct Reach {
     RTCBounds bounds;
     int unshaded_by_itself;
@@ -50,7 +51,6 @@ class AnalyticScene {
 
   RTCScene scene_;
   std::vector<Reach> boxes_;
-  size_t count_ = 0;
 };
 
 }  // namespace whit

@@ -33,10 +33,7 @@ void Blockers::add_mesh(const MeshView& mesh) { meshes_.push_back(mesh); }
 
 void Blockers::add_exact(std::span<const ExactTriangle> triangles) {
   for (const ExactTriangle& t : triangles) {
-    Box3d box(t.a);
-    box.extendBy(t.b), box.extendBy(t.c);
-    const Vec3d beyond(std::max({t.reach[0], t.reach[1], t.reach[2]}) + t.error);
-    add_box(Box3d(box.min - beyond, box.max + beyond));
+    add_box(bounds_of(t));
     items_.back().exact = &t;
   }
 }
@@ -79,55 +76,60 @@ void Blockers::build() {
       }
     });
   }
-  all_ = {kNothingLow, kNothingHigh};
-  for (const Item& item : items_) grow(all_, item.box.low, item.box.high);
-  if (!items_.empty()) build_node(0, static_cast<int>(items_.size()));
+  const auto n = static_cast<int>(items_.size());
+  all_ = box_of(0, n);
+  if (n > 0) build_node(0, n);
 }
 
-/// A node over items [first, last), which it sorts: halved three times across the longest axis. Returns its number.
+/// Around items [first, last).
+Blockers::Box Blockers::box_of(int first, int last) const {
+  Box box{kNothingLow, kNothingHigh};
+  for (int i = first; i < last; ++i)
+    grow(box, items_[static_cast<size_t>(i)].box.low, items_[static_cast<size_t>(i)].box.high);
+  return box;
+}
+
+/// Sorts items [first, last) into two halves along the axis on which their middles are farthest apart; where the second
+/// begins.
+int Blockers::halve(int first, int last) {
+  const auto middle = [](const Item& item, size_t axis) { return item.box.low[axis] + item.box.high[axis]; };
+  Box middles{kNothingLow, kNothingHigh};
+  for (int i = first; i < last; ++i) {
+    const Item& item = items_[static_cast<size_t>(i)];
+    const Three m{middle(item, 0), middle(item, 1), middle(item, 2)};
+    grow(middles, m, m);
+  }
+  size_t axis = 0;
+  for (size_t a = 1; a < 3; ++a)
+    if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
+  const int half = first + (last - first) / 2;
+  std::nth_element(items_.begin() + first, items_.begin() + half, items_.begin() + last,
+                   [&](const Item& a, const Item& b) { return middle(a, axis) < middle(b, axis); });
+  return half;
+}
+
+/// A node over items [first, last), which it sorts: halved three times. Returns its number.
 int Blockers::build_node(int first, int last) {
-  std::array<int, kWidth + 1> cut{first, last};
-  int parts = 1;
-  while (parts < kWidth && last - first > parts) {
-    std::array<int, kWidth + 1> finer{};
-    int n = 0;
-    for (int k = 0; k < parts; ++k) {
-      const int from = cut[static_cast<size_t>(k)], to = cut[static_cast<size_t>(k) + 1];
-      finer[static_cast<size_t>(n++)] = from;
-      if (to - from < 2) continue;
-      Box middles{kNothingLow, kNothingHigh};
-      const auto middle = [](const Item& item, size_t axis) { return item.box.low[axis] + item.box.high[axis]; };
-      for (int i = from; i < to; ++i) {
-        const Item& item = items_[static_cast<size_t>(i)];
-        const Three m{middle(item, 0), middle(item, 1), middle(item, 2)};
-        grow(middles, m, m);
-      }
-      size_t axis = 0;
-      for (size_t a = 1; a < 3; ++a)
-        if (middles.high[a] - middles.low[a] > middles.high[axis] - middles.low[axis]) axis = a;
-      const int half = from + (to - from) / 2;
-      std::nth_element(items_.begin() + from, items_.begin() + half, items_.begin() + to,
-                       [&](const Item& a, const Item& b) { return middle(a, axis) < middle(b, axis); });
-      finer[static_cast<size_t>(n++)] = half;
+  std::vector<int> cut{first, last};
+  while (cut.size() <= kWidth && last - first >= static_cast<int>(cut.size())) {
+    std::vector<int> finer{first};
+    for (size_t k = 1; k < cut.size(); ++k) {
+      if (cut[k] - cut[k - 1] > 1) finer.push_back(halve(cut[k - 1], cut[k]));
+      finer.push_back(cut[k]);
     }
-    finer[static_cast<size_t>(n)] = last;
-    cut = finer, parts = n;
+    cut = std::move(finer);
   }
-  const int number = static_cast<int>(nodes_.size());
-  nodes_.emplace_back();
-  for (int k = 0; k < parts; ++k) {
-    const int from = cut[static_cast<size_t>(k)], to = cut[static_cast<size_t>(k) + 1];
+  const auto number = nodes_.size();
+  nodes_.emplace_back().count = static_cast<int32_t>(cut.size()) - 1;
+  for (size_t k = 0; k + 1 < cut.size(); ++k) {
+    const int from = cut[k], to = cut[k + 1];
     const int child = to - from == 1 ? ~from : build_node(from, to);
-    Box box{kNothingLow, kNothingHigh};
-    for (int i = from; i < to; ++i) {
-      const Box& b = items_[static_cast<size_t>(i)].box;
-      grow(box, b.low, b.high);
-    }
-    Node& node = nodes_[static_cast<size_t>(number)];
+    const Box box = box_of(from, to);
+    Node& node = nodes_[number];
     for (size_t a = 0; a < 3; ++a) node.low[a][k] = box.low[a], node.high[a][k] = box.high[a];
-    node.child[k] = child, node.count = parts;
+    node.child[k] = child;
   }
-  return number;
+  return static_cast<int>(number);
 }
 
 /// A bit for each child whose box the shaft meets. The box at s meets another where it begins before that ends and ends
@@ -162,13 +164,8 @@ bool Blockers::is_passed(const Item& item, const Shaft& shaft) {
   if (item.unshaded_by_itself == shaft.unshaded_by) return true;
   if (item.exact) return are_beside(shaft, item.exact->n, item.exact->n * item.exact->height, item.exact->error);
   if (!item.mesh) return false;
-  const uint32_t* const index = item.mesh->indices + 3 * static_cast<size_t>(item.triangle);
-  const auto corner = [&](int k) {
-    const float* const p = item.mesh->positions + 3 * static_cast<size_t>(index[k]);
-    return Vec3d(static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2]));
-  };
-  const Vec3d a = corner(0);
-  return are_beside(shaft, (corner(1) - a).cross(corner(2) - a), a, 0);
+  const EndTriangle t = end_triangle(*item.mesh, item.triangle, nullptr);
+  return are_beside(shaft, (t.b - t.a).cross(t.c - t.a), t.a, 0);
 }
 
 /// Whether all rays are on one side of a plane through a, by more than `error`. In double precision: rays leave a surface

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/accel/accel.h"
+#include "core/accel/embree_geometry.h"
 #include "core/accel/shadow_rays.h"
 
 namespace whit {
@@ -24,7 +25,7 @@ class Blockers {
   void add_mesh(const MeshView& mesh);
   void add_exact(std::span<const ExactTriangle> triangles);
   /// Anything else. `unshaded_by_itself` as in GeometryUser.
-  void add_box(const Box3d& box, int unshaded_by_itself = -2);
+  void add_box(const Box3d& box, int unshaded_by_itself = kShadesItself);
   void build();
 
   /// True only if none of the rays [first, first + count), at most kGroup, meets anything before its end at t_far, which
@@ -43,7 +44,7 @@ class Blockers {
     const MeshView* mesh = nullptr;  ///< Of a single triangle.
     uint32_t triangle = 0;
     const ExactTriangle* exact = nullptr;
-    int unshaded_by_itself = -2;
+    int unshaded_by_itself = kShadesItself;
   };
   /// Children are other nodes, or ~ items.
   struct Node {
@@ -53,6 +54,8 @@ class Blockers {
   };
   struct Shaft;
 
+  Box box_of(int first, int last) const;
+  int halve(int first, int last);
   int build_node(int first, int last);
   bool set_ends(Shaft& shaft) const;
   static unsigned meets(const Shaft& shaft, const Node& node);

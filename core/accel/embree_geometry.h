@@ -7,6 +7,9 @@
 
 namespace whit {
 
+/// In place of a number of a shape that cannot shade itself: one that can, which is never what rays are unshaded by.
+constexpr int kShadesItself = -2;
+
 /// What Embree hands back to us with a user geometry or a filter call.
 struct GeometryUser {
   const AnalyticShape* analytic = nullptr;
@@ -14,8 +17,8 @@ struct GeometryUser {
   MeshView mesh{};
   CurveView curves{};
   const ExactTriangle* triangles = nullptr;
-  RTCBounds bounds{};           ///< Of an analytic shape.
-  int unshaded_by_itself = -2;  ///< The number of a shape that cannot shade itself; -2 is no shape, nor no target.
+  RTCBounds bounds{};                      ///< Of an analytic shape.
+  int unshaded_by_itself = kShadesItself;  ///< The number of a shape that cannot shade itself.
 };
 
 /// Callbacks for geometry with a GeometryUser of that kind.

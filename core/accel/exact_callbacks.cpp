@@ -23,12 +23,8 @@ bool meets_before_end(const ShadowRays& shadow, const ExactTriangle& triangle, d
 }
 
 void exact_bounds(const RTCBoundsFunctionArguments* args) {
-  const ExactTriangle& t = static_cast<const GeometryUser*>(args->geometryUserPtr)->triangles[args->primID];
-  Box3d box(t.a);
-  box.extendBy(t.b), box.extendBy(t.c);
-  const double reach = t.error + std::max({t.reach[0], t.reach[1], t.reach[2]});
-  box.min -= Vec3d(reach), box.max += Vec3d(reach);
-  set_bounds(box, *args->bounds_o);
+  set_bounds(bounds_of(static_cast<const GeometryUser*>(args->geometryUserPtr)->triangles[args->primID]),
+             *args->bounds_o);
 }
 
 /// Meets a packet with a triangle in double precision and hands what the alpha test and stands(lane, t) leave standing to

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/vec.h"
+#include "core/base/box.h"
 
 namespace whit {
 
@@ -26,6 +26,13 @@ inline ExactTriangle exact_triangle(const Vec3d& a, const Vec3d& b, const Vec3d&
   t.height = t.n.dot(near);
   t.error = 4.5e-16 * std::max({a.length(), b.length(), c.length()});
   return t;
+}
+
+/// All that is met of it.
+inline Box3d bounds_of(const ExactTriangle& t) {
+  const Box3d box = triangle_box(t.a, t.b, t.c);
+  const Vec3d reach(t.error + std::max({t.reach[0], t.reach[1], t.reach[2]}));
+  return {box.min - reach, box.max + reach};
 }
 
 /// Where the line o + t d meets the triangle's plane; not finite where it runs along it.

@@ -32,11 +32,7 @@ std::pair<double, double> distances(const EndTriangle& t, const Points& points) 
 
 double largest_of(const Vec3d& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-Box3d box_around(const EndTriangle& t) {
-  Box3d box;
-  for (const Vec3d& p : {t.a, t.b, t.c}) box.extendBy(p);
-  return box;
-}
+Box3d box_around(const EndTriangle& t) { return triangle_box(t.a, t.b, t.c); }
 
 /// Notes a triangle that is near. What floats in render space get wrong is known; an instance's space has other lengths,
 /// and huge triangles are what they are for being beyond floats.

@@ -10,9 +10,8 @@
 
 namespace whit {
 
-/// In place of a number of a shape that does not hide its own points: no ray ends on such a shape; the shape, or several
-/// together, hide theirs.
-constexpr int kNobody = -3, kEveryone = -4;
+/// In place of a number of a shape that does not hide its own points: rays do not all end on such a one.
+constexpr int kNobody = -3;
 
 /// For Embree's callbacks; a ray's id is its number among them.
 struct ShadowRays {

@@ -59,7 +59,7 @@ class Study {
     r.sampler = sampler_in_force(*world_.description).name;
     r.resolution = scene.camera().film.resolution;
     r.own_samples = world_.own_samples;
-    fixed_ = {request_.before.wall + world_.fixed.wall, request_.before.cpu + world_.fixed.cpu};
+    fixed_ = request_.before + world_.fixed;
     r.fixed_seconds = fixed_.cpu, r.fixed_wall = fixed_.wall;
     r.per_sample_seconds = world_.per_sample.cpu, r.per_sample_wall = world_.per_sample.wall;
     if (world_.invalid_samples > 0)

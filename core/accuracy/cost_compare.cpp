@@ -188,7 +188,7 @@ class Comparing {
   CostClock& clock_;
   CostComparisons out_;
   int samples_ = 1, pairs_ = 0;
-  const Elapsed fixed_{base_.fixed.wall + request_.before.wall, base_.fixed.cpu + request_.before.cpu};
+  const Elapsed fixed_ = base_.fixed + request_.before;
   double bias_of_place_ = 0;  ///< Share of the time.
   double overhead_ = 0;       ///< Seconds of judging pictures, as far as known.
 };

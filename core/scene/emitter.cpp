@@ -53,9 +53,7 @@ int side_of_normals(const Mesh& mesh, const uint32_t* index, const Vec3d& n) {
 
 /// How far off rounding may have put a triangle's corners.
 Vec3d rounding_of_corners(const Mesh& mesh, uint32_t prim) {
-  Box3d box;
-  for (size_t k = 0; k < 3; ++k) box.extendBy(mesh.corner(prim, k));
-  return rounding_of(farthest_of(box));
+  return rounding_of(farthest_of(triangle_box(mesh.corner(prim, 0), mesh.corner(prim, 1), mesh.corner(prim, 2))));
 }
 
 /// Of lengths and distances, how far the ray tracer's planes may be off (core/accel/ray_end.h).
@@ -223,9 +221,7 @@ LightReach TriangleEmitter::reach() const {
   const uint32_t* index = indices();
   const std::array<Vec3d, 3> corners{Vec3d(mesh.position(index[0])), Vec3d(mesh.position(index[1])),
                                      Vec3d(mesh.position(index[2]))};
-  Box3d box;
-  for (const Vec3d& corner : corners) box.extendBy(corner);
-  LightReach reach = within(box, emission_.radiance);
+  LightReach reach = within(triangle_box(corners[0], corners[1], corners[2]), emission_.radiance);
   const Vec3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   reach.normal = Vec3f(n);
   if (emission_.two_sided) return reach;

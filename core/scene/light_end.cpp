@@ -14,8 +14,7 @@ RayEnd end_on_triangle(const Accel& accel, const Mesh& mesh, uint32_t prim) {
   end.on = RayEnd::On::Plane;
   end.p = corners[0];
   end.n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
-  Box3d box;
-  for (const Vec3d& corner : corners) box.extendBy(corner);
+  const Box3d box = triangle_box(corners[0], corners[1], corners[2]);
   end.error = rounding_of(farthest_of(box));
   end.touching = accel.touching(box, &corners);
   end.own_vertices = mesh.positions.data(), end.own_triangle = prim;
