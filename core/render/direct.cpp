@@ -7,6 +7,7 @@
 #include "core/base/radical_inverse.h"
 #include "core/base/sampling.h"
 #include "core/batch/gather.h"
+#include "core/batch/runs.h"
 #include "core/batch/sort.h"
 #include "core/render/light_reach.h"
 #include "core/render/surface.h"
@@ -103,17 +104,16 @@ LightSamples run_of(const LightSamples& s, int first, int n, const SceneLight& l
 
 /// Samples of the lights of a batch's points, one light after another: `order` has the points by light.
 void sample_runs(const Scene& scene, const int32_t* light, const int32_t* order, const LightSamples& s) {
-  for (int first = 0, last; first < s.n; first = last) {
-    const int number = light[order[first]];
-    for (last = first + 1; last < s.n && light[order[last]] == number;) ++last;
-    const SceneLight& from = scene.lights[static_cast<size_t>(number)];
+  const auto light_of = [&](int i) { return light[order[i]]; };
+  for_runs(0, s.n, light_of, [&](int first, int last) {
+    const SceneLight& from = scene.lights[static_cast<size_t>(light_of(first))];
     const LightSamples run = run_of(s, first, last - first, from);
     from.light->sample(run);
     // No direction that is sampled otherwise meets a delta light.
     if (!run.pdf) std::fill(s.pdf + first, s.pdf + last, std::numeric_limits<float>::infinity());
-    if (!s.q || run.q) continue;
+    if (!s.q || run.q) return;
     for (int i = first; i < last; ++i) s.q.set(i, s.p[i] + s.wi[i] * s.distance[i]);
-  }
+  });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/fields.h"
+#include "core/batch/runs.h"
 #include "core/render/surface_kinds.h"
 #include "core/scene/bake.h"
 
@@ -104,22 +105,23 @@ ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& a
   const bool apart = h.has_differentials() || scene.has_instances;
   const GeometricPartials g =
       apart ? GeometricPartials{arena.vec3(h.n), arena.vec3(h.n)} : GeometricPartials{s.dpdu, s.dpdv};
-  for (int i = 0; i < h.n; ++i) s.flips[i] = scene.shapes[static_cast<size_t>(h.shape[i])].flips;
+  const auto shape_of = [&](int i) -> const SceneShape& { return scene.shapes[static_cast<size_t>(h.shape[i])]; };
+  for (int i = 0; i < h.n; ++i) s.flips[i] = shape_of(i).flips;
   for_lanes(h.n, [&](int i) { s.wo.set(i, -h.d[i]); });
-  for (int first = 0, last; first < h.n; first = last) {
-    const SceneShape& shape = scene.shapes[static_cast<size_t>(h.shape[first])];
-    last = first + 1;
-    while (last < h.n && scene.shapes[static_cast<size_t>(h.shape[last])].sort_key == shape.sort_key) ++last;
-    const ShadingBatch run = s.range(first, last - first);
-    const GeometricPartials partials{g.dpdu.from(first), g.dpdv.from(first)};
-    if (shape.mesh) {
-      mesh_surfaces(scene, h, first, run, partials, arena);
-    } else if (shape.analytic) {
-      analytic_surfaces(scene, h, first, run, partials);
-    } else {
-      curve_surfaces(scene, h, first, run, partials);
-    }
-  }
+  for_runs(
+      0, h.n, [&](int i) { return shape_of(i).sort_key; },
+      [&](int first, int last) {
+        const SceneShape& shape = shape_of(first);
+        const ShadingBatch run = s.range(first, last - first);
+        const GeometricPartials partials{g.dpdu.from(first), g.dpdv.from(first)};
+        if (shape.mesh) {
+          mesh_surfaces(scene, h, first, run, partials, arena);
+        } else if (shape.analytic) {
+          analytic_surfaces(scene, h, first, run, partials);
+        } else {
+          curve_surfaces(scene, h, first, run, partials);
+        }
+      });
   if (scene.has_instances) place_surfaces(scene, h, s, g);
   if (h.has_differentials()) compute_footprints(h, s, g);
   return s;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/base/fastmath.h"
+#include "core/batch/runs.h"
 #include "core/render/surface_kinds.h"
 
 namespace whit {
@@ -32,10 +33,8 @@ struct Corners {
   /// Calls f(triangle, from, to) for every stretch of lanes on one triangle: a wall's are long.
   template <class F>
   static void for_triangles(const uint32_t* prim, int first, int n, const F& f) {
-    for (int from = first, to; from < first + n; from = to) {
-      for (to = from + 1; to < first + n && prim[to] == prim[from];) ++to;
-      f(prim[from], from, to);
-    }
+    for_runs(
+        first, first + n, [&](int i) { return prim[i]; }, [&](int from, int to) { f(prim[from], from, to); });
   }
 
  private:
@@ -74,10 +73,9 @@ TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int off
   const auto shape_of = [&](int i) -> const SceneShape& { return scene.shapes[static_cast<size_t>(shapes[i])]; };
   // Calls f(shape, first, n) for every stretch of lanes of one shape.
   const auto for_shapes = [&](const auto& f) {
-    for (int first = 0, last; first < count; first = last) {
-      for (last = first + 1; last < count && shapes[last] == shapes[first];) ++last;
-      f(shape_of(first), first, last - first);
-    }
+    for_runs(
+        0, count, [&](int i) { return shapes[i]; },
+        [&](int first, int last) { f(shape_of(first), first, last - first); });
   };
   t.p = Corners(arena, count);
   t.u0 = arena.floats(count), t.v0 = arena.floats(count), t.u1 = arena.floats(count);

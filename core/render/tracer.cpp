@@ -8,6 +8,7 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/fields.h"
+#include "core/batch/runs.h"
 #include "core/batch/sort.h"
 #include "core/plugin/bump.h"
 #include "core/render/surface.h"
@@ -90,9 +91,7 @@ void Tracer::shade(Points& points) {
   for (int i = 0; i < points.n; ++i) count += i == 0 || material_of(i) != material_of(i - 1);
   MaterialRun* const runs = arena_.alloc<MaterialRun>(count);
   int number = 0;
-  for (int first = 0, last; first < points.n; first = last) {
-    last = first + 1;
-    while (last < points.n && material_of(last) == material_of(first)) ++last;
+  for_runs(0, points.n, material_of, [&](int first, int last) {
     MaterialRun& run =
         *new (runs + number++) MaterialRun{points.at.range(first, last - first), LobeSet(arena_), {}, first};
     const Material& material = *scene_.materials[static_cast<size_t>(material_of(first))];
@@ -107,7 +106,7 @@ void Tracer::shade(Points& points) {
     }
     if (run.scatters) run.frame = prepare_frame(run.lobes, run.points);
     points.notes->scatters |= run.scatters;
-  }
+  });
   points.materials = {runs, static_cast<size_t>(count)};
 }
 
