@@ -4,9 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/image/picture_rows.h"
 
@@ -22,6 +28,27 @@ std::unique_ptr<PictureRows> open_picture(const std::string& path);
 
 /// The error for users, which names the file, when opening or reading it has thrown `e`.
 std::string picture_error(const std::string& path, const std::exception& e);
+
+/// A file that is closed when its owner goes.
+using FilePtr = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// Opens a file to be read; throws the reason why not.
+inline FilePtr open_to_read(const std::string& path) {
+  FilePtr file(std::fopen(path.c_str(), "rb"), std::fclose);
+  if (!file) throw std::runtime_error(std::strerror(errno));
+  return file;
+}
+
+/// Fills in the header of a picture that is all of its window. On sRGB's scale, as OpenImageIO has it of these formats
+/// where a file says nothing else.
+inline void set_header(ImageInfo& info, int width, int height, SampleFormat format, std::vector<std::string> channels) {
+  info.width = info.full_width = width;
+  info.height = info.full_height = height;
+  info.format = format;
+  info.channels = static_cast<int>(channels.size());
+  info.channel_names = std::move(channels);
+  info.metadata["oiio:ColorSpace"] = "sRGB";
+}
 
 /// Why a header cannot be true, or "": a header may lie, and allocating what it claims can take the machine down.
 inline std::string size_problem(const std::string& path, const ImageInfo& info) {

@@ -1,5 +1,4 @@
 // JPEG files by libjpeg-turbo, with the settings that OpenImageIO has.
-#include <cerrno>
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
@@ -46,8 +45,7 @@ std::string profile_name(std::string_view icc) {
 
 class JpegRows : public PictureRows {
  public:
-  explicit JpegRows(const std::string& path) : file_(std::fopen(path.c_str(), "rb"), std::fclose) {
-    if (!file_) throw std::runtime_error(std::strerror(errno));
+  explicit JpegRows(const std::string& path) : file_(open_to_read(path)) {
     jpeg_.err = jpeg_std_error(&errors_.base);
     errors_.base.error_exit = [](j_common_ptr jpeg) { give_up(jpeg); };
     errors_.base.emit_message = [](j_common_ptr jpeg, int level) {
@@ -111,13 +109,9 @@ class JpegRows : public PictureRows {
   }
 
   void set_info() {
-    info.width = info.full_width = static_cast<int>(jpeg_.image_width);
-    info.height = info.full_height = static_cast<int>(jpeg_.image_height);
-    info.format = SampleFormat::UInt8;
-    info.channel_names = {"R", "G", "B"};
-    if (jpeg_.num_components == 1) info.channel_names = {"Y"};
-    info.channels = static_cast<int>(info.channel_names.size());
-    info.metadata["oiio:ColorSpace"] = "sRGB";
+    const bool grey = jpeg_.num_components == 1;
+    set_header(info, static_cast<int>(jpeg_.image_width), static_cast<int>(jpeg_.image_height), SampleFormat::UInt8,
+               grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"});
     JOCTET* profile = nullptr;
     unsigned length = 0;
     run([&] { jpeg_read_icc_profile(&jpeg_, &profile, &length); });
@@ -126,7 +120,7 @@ class JpegRows : public PictureRows {
     info.metadata["ICCProfile:profile_description"] = profile_name({reinterpret_cast<const char*>(profile), length});
   }
 
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  FilePtr file_;
   jpeg_decompress_struct jpeg_{};
   Errors errors_{};
   std::vector<uint8_t> row_;

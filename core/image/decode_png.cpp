@@ -117,17 +117,11 @@ class PngRows : public PictureRows {
 
   void set_info() {
     const PngHeader& h = stream_.header;
-    info.width = info.full_width = h.width;
-    info.height = info.full_height = h.height;
-    info.format = wide() ? SampleFormat::UInt16 : SampleFormat::UInt8;
-    info.metadata["oiio:ColorSpace"] = "sRGB";  // as OpenImageIO has it, and the format where a file says nothing else
-    switch (h.colour) {
-      case PngHeader::Grey: info.channel_names = {"Y"}; break;
-      case PngHeader::GreyAlpha: info.channel_names = {"Y", "A"}; break;
-      case PngHeader::RgbAlpha: info.channel_names = {"R", "G", "B", "A"}; break;
-      default: info.channel_names = {"R", "G", "B"}; break;
-    }
-    info.channels = static_cast<int>(info.channel_names.size());
+    std::vector<std::string> channels{"R", "G", "B"};
+    if (h.colour == PngHeader::Grey) channels = {"Y"};
+    if (h.colour == PngHeader::GreyAlpha) channels = {"Y", "A"};
+    if (h.colour == PngHeader::RgbAlpha) channels.push_back("A");
+    set_header(info, h.width, h.height, wide() ? SampleFormat::UInt16 : SampleFormat::UInt8, std::move(channels));
   }
 
   const uint8_t* next_of_stream() {

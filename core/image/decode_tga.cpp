@@ -18,20 +18,16 @@ constexpr size_t kHeader = 18;
 
 class TgaRows : public PictureRows {
  public:
-  explicit TgaRows(const std::string& path) : file_(std::fopen(path.c_str(), "rb"), std::fclose) {
-    if (!file_) throw std::runtime_error(std::strerror(errno));
+  explicit TgaRows(const std::string& path) : file_(open_to_read(path)) {
     std::array<uint8_t, kHeader> h;
     read(h.data(), kHeader);
     runs_ = h[2] >= 8;
     pixel_ = h[16] / 8;
-    info.width = info.full_width = h[12] | h[13] << 8;
-    info.height = info.full_height = h[14] | h[15] << 8;
     bottom_first = (h[17] & 0x20) == 0;
-    info.format = SampleFormat::UInt8;
-    info.channel_names = pixel_ == 1 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
-    if (pixel_ == 4) info.channel_names.push_back("A");
-    info.channels = static_cast<int>(pixel_);
-    info.metadata["oiio:ColorSpace"] = "sRGB";
+    std::vector<std::string> channels{"R", "G", "B"};
+    if (pixel_ == 1) channels = {"Y"};
+    if (pixel_ == 4) channels.push_back("A");
+    set_header(info, h[12] | h[13] << 8, h[14] | h[15] << 8, SampleFormat::UInt8, std::move(channels));
     if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
     if (std::fseek(file_.get(), h[0], SEEK_CUR) != 0) throw std::runtime_error(std::strerror(errno));
     row_.resize(static_cast<size_t>(info.width) * pixel_);
@@ -74,7 +70,7 @@ class TgaRows : public PictureRows {
     }
   }
 
-  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+  FilePtr file_;
   size_t pixel_ = 0;  // bytes
   bool runs_ = false, repeats_ = false;
   size_t left_ = 0;  // pixels of the packet

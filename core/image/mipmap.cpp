@@ -333,7 +333,7 @@ std::unique_ptr<const MipMap> MipMap::in_file(ScratchFile& file) const {
     level->memory = copy->in_file_;
     level->texels = copy->in_file_->as<void>(at);
     copy->levels_[i] = level;
-    at += (bytes_of(i) + ScratchFile::kAlign - 1) / ScratchFile::kAlign * ScratchFile::kAlign;
+    at += ScratchFile::room_for(bytes_of(i));
   }
   return copy;
 }

@@ -10,6 +10,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "core/image/decode.h"
+
 namespace whit {
 namespace {
 
@@ -46,10 +48,7 @@ int PngHeader::numbers() const {
 }
 
 PngStream::PngStream(const std::string& path)
-    : file_(std::fopen(path.c_str(), "rb"), std::fclose),
-      inflate_(std::make_unique<inflate_state>()),
-      buffer_(kBuffer) {
-  if (!file_) throw std::runtime_error(std::strerror(errno));
+    : file_(open_to_read(path)), inflate_(std::make_unique<inflate_state>()), buffer_(kBuffer) {
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // pixels are read in larger pieces than its own
   read_header();
   find_pixels();

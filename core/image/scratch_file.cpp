@@ -56,7 +56,7 @@ bool ScratchFile::reserve(size_t bytes, size_t& at) {
 
 std::shared_ptr<const TexelBlock> ScratchFile::write(const std::vector<std::span<const std::byte>>& pieces) {
   size_t bytes = 0, begin = 0;
-  for (const auto& piece : pieces) bytes += round_up(piece.size(), kAlign);
+  for (const auto& piece : pieces) bytes += room_for(piece.size());
   if (!reserve(bytes, begin)) return nullptr;
   size_t at = begin;
   for (const auto& piece : pieces) {
@@ -65,7 +65,7 @@ std::shared_ptr<const TexelBlock> ScratchFile::write(const std::vector<std::span
       failed_ = true;
       return nullptr;
     }
-    at += round_up(piece.size(), kAlign);
+    at += room_for(piece.size());
   }
   try {
     return std::make_shared<TexelBlock>(file_, begin, bytes);

@@ -15,7 +15,8 @@ namespace whit {
 /// Thread-safe.
 class ScratchFile {
  public:
-  static constexpr size_t kAlign = 64;  ///< Pieces begin at multiples of it.
+  /// The room that a piece takes: the next one begins behind it.
+  static constexpr size_t room_for(size_t bytes) { return (bytes + kAlign - 1) / kAlign * kAlign; }
 
   ScratchFile() = default;
   ~ScratchFile();
@@ -26,6 +27,7 @@ class ScratchFile {
   std::shared_ptr<const TexelBlock> write(const std::vector<std::span<const std::byte>>& pieces);
 
  private:
+  static constexpr size_t kAlign = 64;
   bool reserve(size_t bytes, size_t& at);
 
   std::mutex mutex_;
