@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace whit::test {
@@ -24,6 +25,15 @@ inline const std::string& temp_folder() {
   static const Folder folder;
   EXPECT_TRUE(folder.made) << "cannot make " << folder.path;
   return folder.path;
+}
+
+/// The path of a file there.
+inline std::string temp_path(const std::string& name) { return temp_folder() + "/" + name; }
+
+/// Writes a file there; returns its path.
+inline std::string write_temp(const std::string& name, const std::string& bytes) {
+  std::ofstream(temp_path(name), std::ios::binary) << bytes;
+  return temp_path(name);
 }
 
 }  // namespace whit::test

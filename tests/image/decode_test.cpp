@@ -16,12 +16,8 @@
 namespace whit {
 namespace {
 
-std::string temp(const std::string& name) { return test::temp_folder() + "/whit_decode_" + name; }
-
-std::string write_bytes(const std::string& name, const std::string& bytes) {
-  std::ofstream(temp(name), std::ios::binary) << bytes;
-  return temp(name);
-}
+using test::temp_path;
+using test::write_temp;
 
 // All numbers, top row first; bytes as numbers from 0 to 255.
 std::vector<float> numbers_of(PictureRows& rows) {
@@ -149,7 +145,7 @@ TEST(DecodePng, every_kind_by_every_filter_in_order_and_interlaced) {
     for (const bool interlaced : {false, true})
       for (const auto& [width, height] : {std::pair{37, 23}, {1, 1}, {3, 2}, {1, 9}, {5, 1}}) {
         const PngPicture p = random_png(width, height, kind.bits, kind.type);
-        const std::string path = write_bytes("kind.png", png_file(p, interlaced));
+        const std::string path = write_temp("kind.png", png_file(p, interlaced));
         const std::string what = std::to_string(kind.bits) + " bits, type " + std::to_string(kind.type) + ", " +
                                  std::to_string(width) + " x " + std::to_string(height) +
                                  (interlaced ? " interlaced" : "");
@@ -163,10 +159,10 @@ TEST(DecodePng, more_than_fits_into_any_buffer_in_chunks_of_any_size) {
   // 700 x 500 x 3 bytes are eight strips of 128 KiB and 16 buffers of 64 KiB.
   const PngPicture p = random_png(700, 500, 8, 2);
   for (const size_t chunk_bytes : {1000u, 65536u, 70001u, 2000000u})
-    EXPECT_EQ(numbers_of(*open_png(write_bytes("large.png", png_file(p, false, chunk_bytes)))), expected_of(p));
+    EXPECT_EQ(numbers_of(*open_png(write_temp("large.png", png_file(p, false, chunk_bytes)))), expected_of(p));
   // A row alone is larger than a strip.
   const PngPicture wide = random_png(100000, 3, 8, 2);
-  EXPECT_EQ(numbers_of(*open_png(write_bytes("wide.png", png_file(wide, false)))), expected_of(wide));
+  EXPECT_EQ(numbers_of(*open_png(write_temp("wide.png", png_file(wide, false)))), expected_of(wide));
 }
 
 std::string error_of(const std::function<void()>& f) {
@@ -179,7 +175,7 @@ std::string error_of(const std::function<void()>& f) {
 TEST(DecodePng, what_is_damaged_is_an_error) {
   const std::string whole = png_file(random_png(20, 20, 8, 2), false);
   const auto error = [](const std::string& bytes) {
-    const std::string path = write_bytes("damaged.png", bytes);
+    const std::string path = write_temp("damaged.png", bytes);
     return error_of([&] { numbers_of(*open_png(path)); });
   };
   EXPECT_EQ(error(whole), "");
@@ -199,7 +195,7 @@ TEST(DecodePng, headers_that_cannot_be_are_errors) {
   const auto error = [](PngPicture p, int interlace = 0) {
     std::string bytes = png_file(p, false);
     if (interlace) bytes = png_file(p, interlace == 1);
-    const std::string path = write_bytes("header.png", bytes);
+    const std::string path = write_temp("header.png", bytes);
     return error_of([&] { open_png(path); });
   };
   for (const auto& [bits, type] : {std::pair{3, 0}, {4, 2}, {16, 3}, {8, 5}, {8, 1}, {4, 6}, {32, 0}}) {
@@ -207,13 +203,13 @@ TEST(DecodePng, headers_that_cannot_be_are_errors) {
     p.bits = bits, p.type = type;
     p.numbers.resize(100);
     std::string header = word(2) + word(2) + std::string{static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
-    const std::string path = write_bytes("header.png", "\x89PNG\r\n\x1a\n" + chunk("IHDR", header));
+    const std::string path = write_temp("header.png", "\x89PNG\r\n\x1a\n" + chunk("IHDR", header));
     EXPECT_NE(error_of([&] { open_png(path); }), "") << bits << ' ' << type;
   }
   EXPECT_EQ(error(random_png(2, 2, 8, 0)), "");
   // 2000000000 x 2000000000 pixels in a few bytes.
   const std::string lying = word(2000000000) + word(2000000000) + std::string("\x08\x02\0\0\0", 5);
-  const std::string path = write_bytes("lying.png", "\x89PNG\r\n\x1a\n" + chunk("IHDR", lying) + chunk("IDAT", "x"));
+  const std::string path = write_temp("lying.png", "\x89PNG\r\n\x1a\n" + chunk("IHDR", lying) + chunk("IDAT", "x"));
   EXPECT_NE(error_of([&] { open_png(path); }).find("claims"), std::string::npos);
 }
 
@@ -226,10 +222,10 @@ std::string write_with_oiio(const std::string& name, OIIO::ImageSpec spec) {
     const auto pixel = i / size_t(spec.nchannels), x = pixel % size_t(spec.width), y = pixel / size_t(spec.width);
     pixels[i] = static_cast<unsigned char>(x / 7 * 11 + y * 3 + i % size_t(spec.nchannels) * 50);
   }
-  auto out = OIIO::ImageOutput::create(temp(name));
-  EXPECT_TRUE(out && out->open(temp(name), spec) && out->write_image(OIIO::TypeDesc::UINT8, pixels.data()) &&
+  auto out = OIIO::ImageOutput::create(temp_path(name));
+  EXPECT_TRUE(out && out->open(temp_path(name), spec) && out->write_image(OIIO::TypeDesc::UINT8, pixels.data()) &&
               out->close());
-  return temp(name);
+  return temp_path(name);
 }
 
 void expect_as_openimageio(const std::string& path, PictureRows& rows) {
@@ -269,7 +265,7 @@ TEST(DecodeJpeg, the_name_of_its_profile_is_known) {
     const auto length = static_cast<uint16_t>(data.size() + 2);
     const std::string marker =
         std::string("\xff\xe2") + static_cast<char>(length >> 8) + static_cast<char>(length) + data;
-    const std::string path = write_bytes("profile.jpg", bytes.substr(0, 2) + marker + bytes.substr(2));
+    const std::string path = write_temp("profile.jpg", bytes.substr(0, 2) + marker + bytes.substr(2));
     EXPECT_EQ(open_jpeg(path)->info.metadata.at("ICCProfile:profile_description"), "Linear") << tag.substr(0, 4);
   }
 }
@@ -279,7 +275,7 @@ TEST(DecodeJpeg, what_is_cut_short_is_an_error) {
   std::ifstream file(path, std::ios::binary);
   const std::string whole{std::istreambuf_iterator<char>(file), {}};
   for (const size_t part : {whole.size() / 2, whole.size() * 9 / 10, size_t{300}, size_t{10}}) {
-    const std::string cut = write_bytes("cut.jpg", whole.substr(0, part));
+    const std::string cut = write_temp("cut.jpg", whole.substr(0, part));
     EXPECT_NE(error_of([&] { numbers_of(*open_jpeg(cut)); }), "") << part;
   }
 }
@@ -301,7 +297,7 @@ TEST(DecodeTga, both_orders_of_rows_and_packets_across_rows) {
   for (const bool top_first : {false, true}) {
     std::string tga(18, '\0');
     tga[0] = 2, tga[2] = 11, tga[12] = 3, tga[14] = 2, tga[16] = 8, tga[17] = top_first ? 0x20 : 0;
-    const std::string path = write_bytes("runs.tga", tga + "id" + std::string("\x83\x07\x01\x08\x09 and more", 14));
+    const std::string path = write_temp("runs.tga", tga + "id" + std::string("\x83\x07\x01\x08\x09 and more", 14));
     EXPECT_EQ(kind_of_picture(path), PictureKind::Tga);
     EXPECT_EQ(numbers_of(*open_tga(path)),
               top_first ? (std::vector<float>{7, 7, 7, 7, 8, 9}) : (std::vector<float>{7, 8, 9, 7, 7, 7}));
@@ -312,11 +308,11 @@ TEST(DecodeTga, both_orders_of_rows_and_packets_across_rows) {
 TEST(DecodeTga, uncommon_kinds_are_left_to_openimageio) {
   std::string tga(18, '\0');
   tga[2] = 2, tga[12] = 1, tga[14] = 1, tga[16] = 24;
-  EXPECT_EQ(kind_of_picture(write_bytes("plain.tga", tga + "bgr12345")), PictureKind::Tga);
+  EXPECT_EQ(kind_of_picture(write_temp("plain.tga", tga + "bgr12345")), PictureKind::Tga);
   std::string mirrored = tga, narrow = tga, mapped = tga;
   mirrored[17] = 0x10, narrow[16] = 16, mapped[1] = 1, mapped[2] = 1, mapped[16] = 8;
   for (const std::string& t : {mirrored, narrow, mapped})
-    EXPECT_EQ(kind_of_picture(write_bytes("other.tga", t + "bgr12345")), PictureKind::Other);
+    EXPECT_EQ(kind_of_picture(write_temp("other.tga", t + "bgr12345")), PictureKind::Other);
 }
 
 }  // namespace

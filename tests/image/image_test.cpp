@@ -13,12 +13,8 @@
 namespace whit {
 namespace {
 
-std::string temp(const std::string& name) { return test::temp_folder() + "/whit_image_" + name; }
-
-std::string write_bytes(const std::string& name, const std::string& bytes) {
-  std::ofstream(temp(name), std::ios::binary) << bytes;
-  return temp(name);
-}
+using test::temp_path;
+using test::write_temp;
 
 std::string floats(const std::vector<float>& values) {
   std::string bytes(values.size() * sizeof(float), '\0');
@@ -38,22 +34,22 @@ std::string tga(int width, int height, int bits, int descriptor, const std::stri
 }
 
 std::string write_with_oiio(const std::string& name, OIIO::ImageSpec spec, const std::vector<unsigned char>& bytes) {
-  auto out = OIIO::ImageOutput::create(temp(name));
-  EXPECT_TRUE(out && out->open(temp(name), spec) && out->write_image(OIIO::TypeDesc::UINT8, bytes.data()) &&
+  auto out = OIIO::ImageOutput::create(temp_path(name));
+  EXPECT_TRUE(out && out->open(temp_path(name), spec) && out->write_image(OIIO::TypeDesc::UINT8, bytes.data()) &&
               out->close());
-  return temp(name);
+  return temp_path(name);
 }
 
 TEST(ReadImage, pfm_rows_come_top_first) {
   // A PFM stores the bottom row first; here that is (1, 2, 3).
-  const auto r = read_image(write_bytes("o.pfm", "PF\n1 2\n-1.0\n" + floats({1, 2, 3, 40, 50, 60})));
+  const auto r = read_image(write_temp("o.pfm", "PF\n1 2\n-1.0\n" + floats({1, 2, 3, 40, 50, 60})));
   ASSERT_TRUE(r.ok()) << r.error;
   EXPECT_EQ(r.value.pixels, (std::vector<float>{40, 50, 60, 1, 2, 3}));
   EXPECT_EQ(r.value.format, SampleFormat::Float);
 }
 
 TEST(ReadImage, pfm_scale_multiplies_and_grey_has_one_channel) {
-  const auto r = read_image(write_bytes("g.pfm", "Pf\n2 1\n-2.0\n" + floats({0.25f, 3})));
+  const auto r = read_image(write_temp("g.pfm", "Pf\n2 1\n-2.0\n" + floats({0.25f, 3})));
   ASSERT_TRUE(r.ok()) << r.error;
   EXPECT_EQ(r.value.channels, 1);
   EXPECT_EQ(r.value.pixels, (std::vector<float>{0.5f, 6}));  // as pbrt-v3 does
@@ -61,7 +57,7 @@ TEST(ReadImage, pfm_scale_multiplies_and_grey_has_one_channel) {
 
 TEST(ReadImage, tga_of_24_bits_bottom_up) {
   // File order: bottom row red (BGR 0,0,255), top row 51 of blue; no origin bit means bottom first.
-  const auto r = read_image(write_bytes("b.tga", tga(1, 2, 24, 0, std::string("\0\0\xff\x33\0\0", 6))));
+  const auto r = read_image(write_temp("b.tga", tga(1, 2, 24, 0, std::string("\0\0\xff\x33\0\0", 6))));
   ASSERT_TRUE(r.ok()) << r.error;
   ASSERT_EQ(r.value.channels, 3);
   EXPECT_EQ(r.value.pixels, (std::vector<float>{0, 0, 0.2f, 1, 0, 0}));
@@ -70,7 +66,7 @@ TEST(ReadImage, tga_of_24_bits_bottom_up) {
 
 TEST(ReadImage, tga_of_32_bits_top_down_ignores_alpha) {
   // Top row: BGRA 51, 102, 153 with alpha 0; bottom row 255, 0, 0 with alpha 51. Premultiplied they would be 0 and 0.2.
-  const auto r = read_image(write_bytes("a.tga", tga(1, 2, 32, 0x28, std::string("\x33\x66\x99\0\xff\0\0\x33", 8))));
+  const auto r = read_image(write_temp("a.tga", tga(1, 2, 32, 0x28, std::string("\x33\x66\x99\0\xff\0\0\x33", 8))));
   ASSERT_TRUE(r.ok()) << r.error;
   const auto rgb = r.value.rgb_channels();
   EXPECT_FLOAT_EQ(r.value.pixel(0, 0)[rgb[0]], 0.6f);
@@ -129,26 +125,26 @@ TEST(ReadImage, errors_name_the_file_and_the_reason) {
   };
   expect("/nowhere/x.png", "no such file");
   expect(test::temp_folder(), "folder");
-  expect(write_bytes("empty.png", ""), "empty");
-  expect(write_bytes("noise.png", std::string(300, 'q')), ": ");
-  expect(write_bytes("noise.exr", std::string(300, 'q')), ": ");
+  expect(write_temp("empty.png", ""), "empty");
+  expect(write_temp("noise.png", std::string(300, 'q')), ": ");
+  expect(write_temp("noise.exr", std::string(300, 'q')), ": ");
   // 60000 x 60000 pixels in 18 bytes.
   std::string lying = tga(0, 0, 24, 0, "abc");
   lying[12] = lying[14] = '\x60';
   lying[13] = lying[15] = '\xea';
-  expect(write_bytes("lying.tga", lying), "claims");
+  expect(write_temp("lying.tga", lying), "claims");
 }
 
 TEST(ReadImage, a_truncated_file_is_an_error) {
   const std::string whole = "PF\n64 64\n-1.0\n" + floats(std::vector<float>(64 * 64 * 3, 0.5f));
-  EXPECT_FALSE(read_image(write_bytes("cut.pfm", whole.substr(0, whole.size() / 2))).ok());
+  EXPECT_FALSE(read_image(write_temp("cut.pfm", whole.substr(0, whole.size() / 2))).ok());
   const std::string targa = tga(64, 64, 24, 0, std::string(64 * 64 * 3 / 2, 'x'));
-  EXPECT_FALSE(read_image(write_bytes("cut.tga", targa)).ok());
+  EXPECT_FALSE(read_image(write_temp("cut.tga", targa)).ok());
 }
 
 TEST(ProbeImage, tells_the_size_without_reading_pixels) {
   // Only the header is there: probing works, reading does not.
-  const std::string path = write_bytes("head.pfm", "PF\n7 5\n-1.0\n" + floats({0}));
+  const std::string path = write_temp("head.pfm", "PF\n7 5\n-1.0\n" + floats({0}));
   const auto r = probe_image(path);
   ASSERT_TRUE(r.ok()) << r.error;
   EXPECT_EQ(r.value.width, 7);
@@ -180,11 +176,11 @@ std::string png_file(const std::string& name, uint8_t bits, uint8_t type, const 
                            static_cast<char>(~n >> 8)};
   const std::string stored = std::string("\x78\x01\x01", 3) + length + rows + word(b << 16 | a);
   const std::string header = word(2) + word(1) + std::string{static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
-  std::ofstream(temp(name), std::ios::binary)
+  std::ofstream(temp_path(name), std::ios::binary)
       << "\x89PNG\r\n\x1a\n"
       << chunk("IHDR", header) << (palette.empty() ? "" : chunk("PLTE", palette)) << chunk("IDAT", stored)
       << chunk("IEND", "");
-  return temp(name);
+  return temp_path(name);
 }
 
 Image read_by_openimageio(const std::string& path) {
