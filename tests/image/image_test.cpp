@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <fstream>
 
 #include "core/image/oiio/module.h"
 #include "tests/base/temp_folder.h"
@@ -176,11 +175,9 @@ std::string png_file(const std::string& name, uint8_t bits, uint8_t type, const 
                            static_cast<char>(~n >> 8)};
   const std::string stored = std::string("\x78\x01\x01", 3) + length + rows + word(b << 16 | a);
   const std::string header = word(2) + word(1) + std::string{static_cast<char>(bits), static_cast<char>(type), 0, 0, 0};
-  std::ofstream(temp_path(name), std::ios::binary)
-      << "\x89PNG\r\n\x1a\n"
-      << chunk("IHDR", header) << (palette.empty() ? "" : chunk("PLTE", palette)) << chunk("IDAT", stored)
-      << chunk("IEND", "");
-  return temp_path(name);
+  return write_temp(name, "\x89PNG\r\n\x1a\n" + chunk("IHDR", header) +
+                              (palette.empty() ? "" : chunk("PLTE", palette)) + chunk("IDAT", stored) +
+                              chunk("IEND", ""));
 }
 
 Image read_by_openimageio(const std::string& path) {
