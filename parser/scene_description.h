@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/attachment.h"
 #include "core/base/diagnostics.h"
 #include "core/base/parameter.h"
 #include "core/base/vec.h"
@@ -52,8 +53,9 @@ struct Entity {
 
 struct TextureDescription : Entity {
   std::string name;
-  bool spectrum = false;  ///< "spectrum"/"color" texture, else "float".
-  int transform = 0;      ///< CTM (texture to world) at the statement.
+  bool spectrum = false;                        ///< "spectrum"/"color" texture, else "float".
+  std::shared_ptr<const PictureBytes> picture;  ///< Instead of a file, where a model brought it.
+  int transform = 0;                            ///< CTM (texture to world) at the statement.
 };
 
 struct MaterialDescription : Entity {
@@ -78,6 +80,7 @@ struct ShapeDescription : Entity {
   int area_light = -1;  ///< Index into area_lights.
   int object = -1;      ///< Index into objects when inside ObjectBegin/End, -1 for the world.
   bool reverse_orientation = false;
+  std::shared_ptr<const MeshSource> mesh;  ///< Of a shape that a model brought.
 };
 
 struct ObjectDescription {

@@ -2,9 +2,11 @@
 // (files read, tables built) only when the plan keeps it.
 #pragma once
 
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "core/base/attachment.h"
 #include "core/base/diagnostics.h"
 #include "core/base/effect.h"
 #include "core/base/render_space.h"
@@ -31,6 +33,9 @@ struct PrepareContext {
 class Plugin {
  public:
   virtual ~Plugin() = default;
+
+  /// What its statement has beside parameters, before check(). Only plugins that models bring statements of take it.
+  virtual void attach(std::shared_ptr<const Attachment>) {}
 
   /// Checks that go across parameters ("number of indices is not a multiple of three"); reads no file.
   virtual void check(Diagnostics&, SourcePos /*statement*/) {}

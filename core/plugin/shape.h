@@ -46,7 +46,12 @@ struct MeshData {
   std::vector<float> normals;     ///< Flat, 3 per vertex, object space, or empty.
   std::vector<float> tangents;    ///< pbrt's "S", flat, 3 per vertex, or empty.
   std::vector<float> uvs;         ///< Flat, 2 per vertex, or empty.
-  size_t degenerate = 0;          ///< How many triangles of the user's were left out because they have no area.
+  std::vector<float> uvs1;        ///< A second set, or empty.
+  std::vector<float> colors;      ///< Flat, 4 per vertex: linear red, green, blue and alpha, or empty.
+  /// Of each vertex, with `tangents`: where it is negative the bitangent is cross(tangent, normal), elsewhere, and where
+  /// this is empty, cross(normal, tangent). Only normal maps ask.
+  std::vector<float> bitangent_signs;
+  size_t degenerate = 0;  ///< How many triangles of the user's were left out because they have no area.
 };
 
 /// Removes the triangles that have no area (two corners alike, or all three on a line as far as double precision can

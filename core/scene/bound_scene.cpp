@@ -132,6 +132,8 @@ class Binder {
     Bound<T> bound;
     bound.where = entity.where;
     std::shared_ptr<Plugin> plugin(info.make());
+    if constexpr (std::is_same_v<Statement, TextureDescription>) plugin->attach(entity.picture);
+    if constexpr (std::is_same_v<Statement, ShapeDescription>) plugin->attach(entity.mesh);
     BindContext ctx = context(entity, info.name, &bound.textures);
     if constexpr (std::is_same_v<Statement, MaterialDescription>) {
       ctx.named_material = [this, &entity, &bound](const std::string& name, std::shared_ptr<Material>& found) {
@@ -191,8 +193,8 @@ class Binder {
     return emission && is_black(emission->radiance());
   }
 
-  template <class T>
-  Bound<T> bind_entity(const Entity& entity, const std::string& category, const Unknown& unknown) {
+  template <class T, class Statement>
+  Bound<T> bind_entity(const Statement& entity, const std::string& category, const Unknown& unknown) {
     const PluginInfo* info = find(entity, category, unknown);
     if (!info) return Bound<T>{nullptr, entity.where, {}, {}, false};
     // A fallback plugin does not know the parameters of the one that was meant.
