@@ -11,6 +11,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/base/attachment.h"
@@ -101,6 +102,12 @@ struct MorphTarget {
   int position = -1, normal = -1, tangent = -1;
 };
 
+/// KHR_draco_mesh_compression: attributes and indices are in these bytes, and their accessors say only what they are.
+struct DracoPrimitive {
+  int view = -1;                                ///< A buffer view.
+  std::vector<std::pair<int, int>> attributes;  ///< Accessors, and the numbers of their attributes in the bytes.
+};
+
 struct Primitive {
   enum class Mode { Triangles, Strip, Fan, Points, Lines } mode = Mode::Triangles;
   Attributes attributes;
@@ -109,7 +116,8 @@ struct Primitive {
   std::vector<MorphTarget> targets;
   std::vector<int>
       variant_material;  ///< Of each of Model::variants: the material, -1 where `material` stays. Or empty.
-  std::string place;     ///< "/meshes/3/primitives/0"
+  std::optional<DracoPrimitive> draco;
+  std::string place;  ///< "/meshes/3/primitives/0"
 };
 
 struct Mesh {

@@ -1,54 +1,15 @@
 // A triangle mesh read from a PLY file. Quads are split as pbrt-v3 splits them, faces with other numbers of
 // corners and triangles without area are left out with a warning.
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
-
+#include "core/base/mapped_file.h"
 #include "core/base/ply.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
 namespace whit {
 namespace {
-
-/// A file's bytes, mapped for as long as this lives.
-class MappedFile {
- public:
-  explicit MappedFile(const std::string& path) {
-    const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    struct stat info {};
-    if (fd < 0 || fstat(fd, &info) != 0) {
-      error_ = errno;
-    } else if (info.st_size > 0) {
-      size_ = static_cast<size_t>(info.st_size);
-      void* data = mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, fd, 0);
-      if (data == MAP_FAILED) error_ = errno;
-      else data_ = static_cast<const char*>(data);
-    }
-    if (fd >= 0) close(fd);
-    if (data_) madvise(const_cast<char*>(data_), size_, MADV_SEQUENTIAL);
-  }
-  ~MappedFile() {
-    if (data_) munmap(const_cast<char*>(data_), size_);
-  }
-  MappedFile(const MappedFile&) = delete;
-  MappedFile& operator=(const MappedFile&) = delete;
-
-  /// 0, or the errno of what failed.
-  int error() const { return error_; }
-  std::string_view bytes() const { return {data_, data_ ? size_ : 0}; }
-
- private:
-  const char* data_ = nullptr;
-  size_t size_ = 0;
-  int error_ = 0;
-};
 
 struct PlyMeshShape final : MeshShape {
   FileName filename;
@@ -59,9 +20,8 @@ struct PlyMeshShape final : MeshShape {
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
     const MappedFile file(filename.path);
-    if (file.error() != 0) {
-      ctx.diagnostics->file_error(filename.where,
-                                  fmt::format("cannot open {}: {}", filename.as_given, std::strerror(file.error())));
+    if (!file.error().empty()) {
+      ctx.diagnostics->file_error(filename.where, fmt::format("cannot open {}: {}", filename.as_given, file.error()));
       return false;
     }
     PlyMesh mesh;

@@ -1,0 +1,17 @@
+// What reading primitives needs of accessors beyond core/gltf/accessor.h.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/gltf/model.h"
+
+namespace whit::gltf {
+
+/// read_floats() in double precision, where NaN and infinity are no error.
+std::string read_any_numbers(const Model& model, int accessor, std::vector<double>& out);
+
+/// "", or which element is not finite.
+std::string not_finite(int accessor, const std::vector<float>& numbers, int width);
+
+}  // namespace whit::gltf
