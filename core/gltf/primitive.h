@@ -23,10 +23,12 @@ struct MeshNeeds {
   bool colors = false;
 };
 
-/// The triangles of one primitive, in the mesh's space (or the joints' targets'). Strips and fans become lists, normals that the file
-/// lacks are those of the triangles (vertices are then not shared), texture coordinates have v pointing up: 1 - v of the
-/// file's, here and nowhere else. A primitive of points or lines is empty. Degenerate triangles are left out and counted.
-/// Returns "", or what is wrong with the file and the place in it.
+/// The triangles of one primitive, in the mesh's space (or the joints' targets'). Strips and fans become lists. Normals
+/// that the file lacks are those of the triangles: there are none then, unless tangents are made, for which vertices are not
+/// shared. Texture coordinates have v pointing up: 1 - v of the file's, here and nowhere else. A primitive of
+/// points or lines, or without positions, is empty. Degenerate triangles are left out and counted, and so are those with
+/// a corner that is not finite. Tangents are empty where the file has neither them nor the texture coordinates. Returns
+/// "", or what is wrong with the file and the place in it. Thread-safe.
 std::string read_primitive(const Model& model, const Primitive& primitive, const Pose& pose, const MeshNeeds& needs,
                            MeshData& out);
 
