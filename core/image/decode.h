@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -18,13 +19,13 @@
 
 namespace whit {
 
-/// Open a file of that kind.
-std::unique_ptr<PictureRows> open_png(const std::string& path);
-std::unique_ptr<PictureRows> open_jpeg(const std::string& path);
-std::unique_ptr<PictureRows> open_tga(const std::string& path);
+/// Open a picture of that kind.
+std::unique_ptr<PictureRows> open_png(const PictureFile& file);
+std::unique_ptr<PictureRows> open_jpeg(const PictureFile& file);
+std::unique_ptr<PictureRows> open_tga(const PictureFile& file);
 
-/// Opens a file of any kind that is known.
-std::unique_ptr<PictureRows> open_picture(const std::string& path);
+/// Opens a picture of any kind that is known.
+std::unique_ptr<PictureRows> open_picture(const PictureFile& file);
 
 /// The error for users, which names the file, when opening or reading it has thrown `e`.
 std::string picture_error(const std::string& path, const std::exception& e);
@@ -32,9 +33,12 @@ std::string picture_error(const std::string& path, const std::exception& e);
 /// A file that is closed when its owner goes.
 using FilePtr = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// Opens a file to be read; throws the reason why not.
-inline FilePtr open_to_read(const std::string& path) {
-  FilePtr file(std::fopen(path.c_str(), "rb"), std::fclose);
+/// Opens a picture to be read; throws the reason why not. The bytes in memory must stay there meanwhile.
+inline FilePtr open_to_read(const PictureFile& picture) {
+  const auto memory = [&](std::span<const uint8_t> bytes) {
+    return ::fmemopen(const_cast<uint8_t*>(bytes.data()), bytes.size(), "rb");
+  };
+  FilePtr file(picture.bytes ? memory(picture.bytes->bytes) : std::fopen(picture.path.c_str(), "rb"), std::fclose);
   if (!file) throw std::runtime_error(std::strerror(errno));
   return file;
 }
@@ -51,12 +55,12 @@ inline void set_header(ImageInfo& info, int width, int height, SampleFormat form
 }
 
 /// Why a header cannot be true, or "": a header may lie, and allocating what it claims can take the machine down.
-inline std::string size_problem(const std::string& path, const ImageInfo& info) {
+inline std::string size_problem(const PictureFile& file, const ImageInfo& info) {
   // No format in use packs a picture tighter than this.
   constexpr double kMostBytesPerFileByte = 40000;
   const double bytes = 4.0 * info.width * info.height * info.channels;
   std::error_code ec;
-  const auto size = std::filesystem::file_size(path, ec);
+  const auto size = file.bytes ? file.bytes->bytes.size() : std::filesystem::file_size(file.path, ec);
   if (bytes <= double(1 << 26) || ec || bytes <= kMostBytesPerFileByte * static_cast<double>(size)) return "";
   return fmt::format("the header claims {} x {} pixels, but the file has only {} bytes", info.width, info.height, size);
 }

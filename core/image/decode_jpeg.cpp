@@ -45,7 +45,7 @@ std::string profile_name(std::string_view icc) {
 
 class JpegRows : public PictureRows {
  public:
-  explicit JpegRows(const std::string& path) : file_(open_to_read(path)) {
+  explicit JpegRows(const PictureFile& file) : file_(open_to_read(file)) {
     jpeg_.err = jpeg_std_error(&errors_.base);
     errors_.base.error_exit = [](j_common_ptr jpeg) { give_up(jpeg); };
     errors_.base.emit_message = [](j_common_ptr jpeg, int level) {
@@ -60,7 +60,7 @@ class JpegRows : public PictureRows {
         jpeg_read_header(&jpeg_, TRUE);
       });
       set_info();
-      if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+      if (std::string problem = size_problem(file, info); !problem.empty()) throw std::runtime_error(problem);
     } catch (...) {
       jpeg_destroy_decompress(&jpeg_);
       throw;
@@ -128,9 +128,9 @@ class JpegRows : public PictureRows {
 
 }  // namespace
 
-std::unique_ptr<PictureRows> open_jpeg(const std::string& path) {
-  auto rows = std::make_unique<JpegRows>(path);
-  if (!rows->is_common()) return oiio().open(path);
+std::unique_ptr<PictureRows> open_jpeg(const PictureFile& file) {
+  auto rows = std::make_unique<JpegRows>(file);
+  if (!rows->is_common()) return oiio().open(file);
   return rows;
 }
 

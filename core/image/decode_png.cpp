@@ -57,7 +57,12 @@ class PackedRows {
 /// From packed pixels to numbers of 8 bits, or of 16 in the order of the file.
 class Unpacker {
  public:
-  explicit Unpacker(const PngStream& stream) : header_(stream.header), palette_(stream.palette) {
+  explicit Unpacker(const PngStream& stream) : header_(stream.header) {
+    for (size_t i = 0; i < 256; ++i) {
+      std::copy_n(&stream.palette[3 * i], 3, &palette_[4 * i]);
+      palette_[4 * i + 3] = stream.palette_alpha[i];
+    }
+    of_colour_ = stream.has_palette_alpha ? 4 : 3;
     // Numbers of few bits stand for the same range as those of eight.
     const int most = (1 << std::min(header_.bits, 8)) - 1;
     for (int i = 0; i <= most; ++i) grey_[i] = static_cast<uint8_t>(i * 255 / most);
@@ -74,22 +79,23 @@ class Unpacker {
     const int mask = (1 << bits) - 1;
     for (int x = 0; x < pixels; ++x) {
       const int bit = x * bits, v = from[bit >> 3] >> (8 - bits - (bit & 7)) & mask;
-      if (header_.colour == PngHeader::Palette) to = std::copy_n(&palette_[3 * v], 3, to);
+      if (header_.colour == PngHeader::Palette) to = std::copy_n(&palette_[4 * v], of_colour_, to);
       else *to++ = grey_[v];
     }
   }
 
  private:
   const PngHeader& header_;
-  const std::array<uint8_t, 3 * 256>& palette_;
+  std::array<uint8_t, 4 * 256> palette_;
+  int of_colour_ = 3;  // numbers of a colour of the palette
   std::array<uint8_t, 256> grey_{};
 };
 
 class PngRows : public PictureRows {
  public:
-  explicit PngRows(const std::string& path) : stream_(path), unpacker_(stream_) {
+  explicit PngRows(const PictureFile& file) : stream_(file), unpacker_(stream_) {
     set_info();
-    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+    if (std::string problem = size_problem(file, info); !problem.empty()) throw std::runtime_error(problem);
     pixel_bytes_ = static_cast<size_t>(info.channels) * (wide() ? 2 : 1);
   }
 
@@ -120,7 +126,7 @@ class PngRows : public PictureRows {
     std::vector<std::string> channels{"R", "G", "B"};
     if (h.colour == PngHeader::Grey) channels = {"Y"};
     if (h.colour == PngHeader::GreyAlpha) channels = {"Y", "A"};
-    if (h.colour == PngHeader::RgbAlpha) channels.push_back("A");
+    if (h.colour == PngHeader::RgbAlpha || stream_.has_palette_alpha) channels.push_back("A");
     set_header(info, h.width, h.height, wide() ? SampleFormat::UInt16 : SampleFormat::UInt8, std::move(channels));
   }
 
@@ -171,6 +177,6 @@ class PngRows : public PictureRows {
 
 }  // namespace
 
-std::unique_ptr<PictureRows> open_png(const std::string& path) { return std::make_unique<PngRows>(path); }
+std::unique_ptr<PictureRows> open_png(const PictureFile& file) { return std::make_unique<PngRows>(file); }
 
 }  // namespace whit

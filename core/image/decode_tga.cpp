@@ -18,7 +18,7 @@ constexpr size_t kHeader = 18;
 
 class TgaRows : public PictureRows {
  public:
-  explicit TgaRows(const std::string& path) : file_(open_to_read(path)) {
+  explicit TgaRows(const PictureFile& file) : file_(open_to_read(file)) {
     std::array<uint8_t, kHeader> h;
     read(h.data(), kHeader);
     runs_ = h[2] >= 8;
@@ -28,7 +28,7 @@ class TgaRows : public PictureRows {
     if (pixel_ == 1) channels = {"Y"};
     if (pixel_ == 4) channels.push_back("A");
     set_header(info, h[12] | h[13] << 8, h[14] | h[15] << 8, SampleFormat::UInt8, std::move(channels));
-    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+    if (std::string problem = size_problem(file, info); !problem.empty()) throw std::runtime_error(problem);
     if (std::fseek(file_.get(), h[0], SEEK_CUR) != 0) throw std::runtime_error(std::strerror(errno));
     row_.resize(static_cast<size_t>(info.width) * pixel_);
   }
@@ -80,6 +80,6 @@ class TgaRows : public PictureRows {
 
 }  // namespace
 
-std::unique_ptr<PictureRows> open_tga(const std::string& path) { return std::make_unique<TgaRows>(path); }
+std::unique_ptr<PictureRows> open_tga(const PictureFile& file) { return std::make_unique<TgaRows>(file); }
 
 }  // namespace whit

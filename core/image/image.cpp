@@ -17,7 +17,9 @@ namespace whit {
 namespace {
 
 // Why a path cannot be a picture at all, or "": OpenImageIO's own texts for these name formats, not reasons.
-std::string file_problem(const std::string& path) {
+std::string file_problem(const PictureFile& picture) {
+  if (picture.bytes) return picture.bytes->bytes.empty() ? "it has no bytes" : "";
+  const std::string& path = picture.path;
   std::error_code ec;
   const auto status = std::filesystem::status(path, ec);
   if (!std::filesystem::exists(status)) return "no such file";
@@ -32,10 +34,10 @@ std::string file_problem(const std::string& path) {
 
 // What `take` makes of an open file, or an error that names it.
 template <class T, class Take>
-Result<T> from_file(const std::string& path, const Take& take) {
+Result<T> from_file(const PictureFile& file, const Take& take) {
   try {
-    return {take(*open_picture(path)), ""};
-  } catch (const std::exception& e) { return {{}, picture_error(path, e)}; }
+    return {take(*open_picture(file)), ""};
+  } catch (const std::exception& e) { return {{}, picture_error(file.path, e)}; }
 }
 
 Image read_all(PictureRows& rows) {
@@ -70,13 +72,13 @@ std::vector<int> ImageInfo::rgb_channels() const {
   return {0, 0, 0};
 }
 
-std::unique_ptr<PictureRows> open_picture(const std::string& path) {
-  if (const std::string problem = file_problem(path); !problem.empty()) throw std::runtime_error(problem);
-  switch (kind_of_picture(path)) {
-    case PictureKind::Png: return open_png(path);
-    case PictureKind::Jpeg: return open_jpeg(path);
-    case PictureKind::Tga: return open_tga(path);
-    default: return oiio().open(path);
+std::unique_ptr<PictureRows> open_picture(const PictureFile& file) {
+  if (const std::string problem = file_problem(file); !problem.empty()) throw std::runtime_error(problem);
+  switch (kind_of_picture(file)) {
+    case PictureKind::Png: return open_png(file);
+    case PictureKind::Jpeg: return open_jpeg(file);
+    case PictureKind::Tga: return open_tga(file);
+    default: return oiio().open(file);
   }
 }
 
@@ -87,10 +89,10 @@ std::string picture_error(const std::string& path, const std::exception& e) {
   return fmt::format("cannot read image \"{}\": {}", path, reason);
 }
 
-Result<ImageInfo> probe_image(const std::string& path) {
-  return from_file<ImageInfo>(path, [](const PictureRows& rows) { return rows.info; });
+Result<ImageInfo> probe_image(const PictureFile& file) {
+  return from_file<ImageInfo>(file, [](const PictureRows& rows) { return rows.info; });
 }
 
-Result<Image> read_image(const std::string& path) { return from_file<Image>(path, read_all); }
+Result<Image> read_image(const PictureFile& file) { return from_file<Image>(file, read_all); }
 
 }  // namespace whit

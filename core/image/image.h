@@ -6,8 +6,11 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
+
+#include "core/base/attachment.h"
 
 namespace whit {
 
@@ -17,6 +20,15 @@ struct Result {
   T value{};
   std::string error;
   bool ok() const { return error.empty(); }
+};
+
+/// Where a picture is: a file, or the bytes of one in memory. Paths turn into one by themselves.
+struct PictureFile {
+  std::string path;                           ///< Of bytes in memory their name, which is for messages.
+  std::shared_ptr<const PictureBytes> bytes;  ///< Null when it is a file.
+  PictureFile(std::string file) : path(std::move(file)) {}
+  PictureFile(const char* file) : path(file) {}
+  PictureFile(std::shared_ptr<const PictureBytes> in_memory) : path(in_memory->name), bytes(std::move(in_memory)) {}
 };
 
 /// How a file stores its numbers; of several kinds in one file, the most precise.
@@ -39,6 +51,9 @@ struct ImageInfo {
   /// The channels that make the colour: R, G, B by name; else the first three; else the first three times
   /// over (grey, with or without alpha). Always three indices into a picture with at least one channel.
   std::vector<int> rgb_channels() const;
+
+  /// The channel that is alpha, -1 when there is none.
+  int alpha_channel() const { return channel("A"); }
 };
 
 /// A picture in memory.
@@ -54,11 +69,11 @@ using Image = PixelArray<float>;
 using ByteImage = PixelArray<uint8_t>;
 
 /// Reads the header only: cheap, nothing is decoded. The error names the file and the reason.
-Result<ImageInfo> probe_image(const std::string& path);
+Result<ImageInfo> probe_image(const PictureFile& file);
 
 /// Reads a picture (exr tga png pfm jpg tiff hdr and whatever else OpenImageIO reads; the contents decide,
 /// not the extension). All channels, raw: no gamma decoding, no premultiplication, no tone mapping. A header
 /// that claims far more pixels than the file can hold is an error. The error names the file and the reason.
-Result<Image> read_image(const std::string& path);
+Result<Image> read_image(const PictureFile& file);
 
 }  // namespace whit

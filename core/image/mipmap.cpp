@@ -21,10 +21,18 @@
 namespace whit {
 namespace {
 
-bool is_grey(const ImageInfo& image) { return image.rgb_channels()[0] == image.rgb_channels()[1]; }
+// Whether texels are one of the picture's numbers.
+bool is_one_channel(const ImageInfo& image, const MipMapOptions& options) {
+  return (options.single && options.alpha) || image.rgb_channels()[0] == image.rgb_channels()[1];
+}
 
 int channels_of(const ImageInfo& image, const MipMapOptions& options) {
-  return options.single || is_grey(image) ? 1 : 3;
+  return options.single || is_one_channel(image, options) ? 1 : 3;
+}
+
+TexelRows::Take taken(const MipMapOptions& options) {
+  if (!options.single) return TexelRows::Take::Rgb;
+  return options.alpha ? TexelRows::Take::Alpha : TexelRows::Take::Luminance;
 }
 
 bool sides_are_powers_of_two(const ImageInfo& image) {
@@ -33,8 +41,8 @@ bool sides_are_powers_of_two(const ImageInfo& image) {
 
 // Whether level 0 can be the file's bytes: nothing is computed of them but one value each.
 bool keeps_bytes(const ImageInfo& image, const MipMapOptions& options) {
-  return image.format == SampleFormat::UInt8 && options.scale >= 0 && (is_grey(image) || !options.single) &&
-         sides_are_powers_of_two(image);
+  return image.format == SampleFormat::UInt8 && options.scale >= 0 &&
+         (is_one_channel(image, options) || !options.single) && sides_are_powers_of_two(image);
 }
 
 // Whether values are stored without their scale, so that no scale can drive them out of range of halves. A negative one
@@ -67,7 +75,7 @@ void halve_rows(const float* upper, const float* lower, int width, int channels,
     // A side that is 1 already takes texel 1 from outside: the same texel again when the texture repeats or clamps, nothing
     // when it is black there (as in pbrt-v3).
     const size_t right = width > 1 ? c : 0;
-    const bool has_right = right > 0 || wrap != WrapMode::Black;
+    const bool has_right = right > 0 || wrap_along_s(wrap) != WrapMode::Black;
     for (size_t i = 0; i < std::max(n - c, c); ++i) {
       float sum = upper[i];
       if (has_right) sum += upper[i + right];
@@ -115,7 +123,7 @@ class MipMap::Builder {
       : map_(map),
         image_(image),
         options_(options),
-        texels_(image, options.single, options.gamma, scales_last(image, options) ? 1 : options.scale),
+        texels_(image, taken(options), options.gamma, scales_last(image, options) ? 1 : options.scale),
         below_(map.levels_.size()) {
     map.first_ = first;
     for (int i = first; i < map.level_count(); ++i) map.levels_[i] = allocate(i);
@@ -207,7 +215,7 @@ class MipMap::Builder {
   // reverse order.
   void descend(int i, int t, const float* row) {
     Below& next = below_[i + 1];
-    const float *upper = row, *lower = map_.wrap_ == WrapMode::Black ? nullptr : row;
+    const float *upper = row, *lower = wrap_along_t(map_.wrap_) == WrapMode::Black ? nullptr : row;
     if (map_.height(i) > 1) {
       next.waits = !next.waits;
       if (next.waits) return next.waiting.assign(row, row + numbers(i));

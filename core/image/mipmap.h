@@ -30,6 +30,7 @@ class ScratchFile;
 /// What a MIP map is made of besides the picture.
 struct MipMapOptions {
   bool single = false;  ///< One channel, the luminance; otherwise RGB (a grey picture still takes one).
+  bool alpha = false;   ///< With `single`: the alpha, 1 where the picture has none.
   WrapMode wrap = WrapMode::Repeat;
   bool gamma = false;   ///< Decode sRGB.
   float scale = 1;      ///< Times every value, after decoding.
@@ -122,7 +123,7 @@ class MipMap {
   struct EllipseLanes;
   struct EwaLanes;
   struct BlockWeights;
-  template <int C, WrapMode W>
+  template <int C, class Wrap>
   class Sampler;
 
   Storage storage(int level) const { return level == 0 ? finest_storage_ : coarse_storage_; }

@@ -32,8 +32,57 @@ int wrap_texel(int i, int n) {
   static_assert(W != WrapMode::LatLong, "is two modes, one along s and one along t");
   if constexpr (W == WrapMode::Repeat) return i & (n - 1);
   if constexpr (W == WrapMode::Clamp) return std::clamp(i, 0, n - 1);
+  if constexpr (W == WrapMode::Mirror) return i & n ? ~i & (n - 1) : i & (n - 1);
   if constexpr (W == WrapMode::Black) return i >= 0 && i < n ? i : -1;
 }
+
+// (s, t) of one axis near enough to the texture for integer texel indices, at no change of the result: a texture that
+// repeats, mirrored or not, is reduced to its period, exactly; with the others everything 10 000 texture sizes away looks
+// the same.
+template <WrapMode W>
+float reduce(float v) {
+  if constexpr (W == WrapMode::Repeat) return v - std::floor(v);
+  if constexpr (W == WrapMode::Mirror) return v - 2 * std::floor(0.5f * v);
+  return std::clamp(v, -1e4f, 1e4f);
+}
+
+// Two wrap modes known when compiling, which the usual ones are.
+template <WrapMode W>
+struct FixedWrap {
+  static constexpr bool kMayBeBlack = wrap_along_s(W) == WrapMode::Black || wrap_along_t(W) == WrapMode::Black;
+  static int along_s(int i, int n) { return wrap_texel<wrap_along_s(W)>(i, n); }
+  static int along_t(int i, int n) { return wrap_texel<wrap_along_t(W)>(i, n); }
+  static float reduce_s(float v) { return reduce<wrap_along_s(W)>(v); }
+  static float reduce_t(float v) { return reduce<wrap_along_t(W)>(v); }
+};
+
+// Any two.
+struct AnyWrap {
+  static constexpr bool kMayBeBlack = true;
+  WrapMode s, t;
+  explicit AnyWrap(WrapMode wrap) : s(wrap_along_s(wrap)), t(wrap_along_t(wrap)) {}
+  int along_s(int i, int n) const { return along(s, i, n); }
+  int along_t(int i, int n) const { return along(t, i, n); }
+  float reduce_s(float v) const { return reduced(s, v); }
+  float reduce_t(float v) const { return reduced(t, v); }
+
+ private:
+  static int along(WrapMode mode, int i, int n) {
+    switch (mode) {
+      case WrapMode::Repeat: return wrap_texel<WrapMode::Repeat>(i, n);
+      case WrapMode::Mirror: return wrap_texel<WrapMode::Mirror>(i, n);
+      case WrapMode::Black: return wrap_texel<WrapMode::Black>(i, n);
+      default: return wrap_texel<WrapMode::Clamp>(i, n);
+    }
+  }
+  static float reduced(WrapMode mode, float v) {
+    switch (mode) {
+      case WrapMode::Repeat: return reduce<WrapMode::Repeat>(v);
+      case WrapMode::Mirror: return reduce<WrapMode::Mirror>(v);
+      default: return reduce<WrapMode::Clamp>(v);
+    }
+  }
+};
 
 // One texel as the processor adds it: three channels in a vector of four (a GCC and Clang extension), or one alone.
 using Vector4 = float __attribute__((vector_size(16)));
@@ -170,22 +219,18 @@ struct MipMap::BlockWeights {
   }
 };
 
-// The filters for C channels and one wrap mode, so that inner loops have neither switch nor call.
-template <int C, WrapMode W>
+// The filters for C channels and one way to wrap, so that inner loops of the usual ones have neither switch nor call.
+template <int C, class Wrap>
 class MipMap::Sampler {
-  static constexpr WrapMode kAlongS = wrap_along_s(W), kAlongT = wrap_along_t(W);
-
  public:
-  explicit Sampler(const MipMap& map)
-      : map_(map), last_(map.level_count() - 1), held_(std::min(map.first_, last_)), finest_(last_) {}
+  Sampler(const MipMap& map, const Wrap& wrap)
+      : map_(map), wrap_(wrap), last_(map.level_count() - 1), held_(std::min(map.first_, last_)), finest_(last_) {}
 
   // The finest level asked for so far.
   int finest() const { return finest_; }
 
-  // st near enough to the texture for integer texel indices, at no change of the result: a repeating texture is
-  // reduced to [0, 1], exactly; with the others everything 10 000 texture sizes away looks the same.
-  static float reduce_s(float s) { return reduce<kAlongS>(s); }
-  static float reduce_t(float t) { return reduce<kAlongT>(t); }
+  float reduce_s(float s) const { return wrap_.reduce_s(s); }
+  float reduce_t(float t) const { return wrap_.reduce_t(t); }
 
   static Value<C> no_value() {
     Value<C> v;
@@ -204,14 +249,14 @@ class MipMap::Sampler {
     const float s_floor = std::floor(s), t_floor = std::floor(t);
     const float ds = s - s_floor, dt = t - t_floor;
     const int x0 = static_cast<int>(s_floor), y0 = static_cast<int>(t_floor);
-    const int x[2] = {wrap_texel<kAlongS>(x0, l.width), wrap_texel<kAlongS>(x0 + 1, l.width)};
-    const int y[2] = {wrap_texel<kAlongT>(y0, l.height), wrap_texel<kAlongT>(y0 + 1, l.height)};
+    const int x[2] = {wrap_.along_s(x0, l.width), wrap_.along_s(x0 + 1, l.width)};
+    const int y[2] = {wrap_.along_t(y0, l.height), wrap_.along_t(y0 + 1, l.height)};
     const float weight[2][2] = {{(1 - ds) * (1 - dt), (1 - ds) * dt}, {ds * (1 - dt), ds * dt}};
     return with_fetch(l, [&](const auto& fetch) {
       Value<C> sum{};
       for (int i = 0; i < 2; ++i)
         for (int j = 0; j < 2; ++j)
-          if (W != WrapMode::Black || (x[i] >= 0 && y[j] >= 0))
+          if (!Wrap::kMayBeBlack || (x[i] >= 0 && y[j] >= 0))
             add(sum, weight[i][j], fetch(static_cast<size_t>(y[j]) * l.width + x[i]));
       return sum;
     });
@@ -220,9 +265,9 @@ class MipMap::Sampler {
   // The texel whose square (s, t) is in, of the finest level.
   Value<C> nearest(float s, float t) {
     const Level& l = use(0);
-    const int x = wrap_texel<kAlongS>(static_cast<int>(std::floor(s * static_cast<float>(l.width))), l.width);
-    const int y = wrap_texel<kAlongT>(static_cast<int>(std::floor(t * static_cast<float>(l.height))), l.height);
-    if (W == WrapMode::Black && (x < 0 || y < 0)) return {};
+    const int x = wrap_.along_s(static_cast<int>(std::floor(s * static_cast<float>(l.width))), l.width);
+    const int y = wrap_.along_t(static_cast<int>(std::floor(t * static_cast<float>(l.height))), l.height);
+    if (Wrap::kMayBeBlack && (x < 0 || y < 0)) return {};
     return with_fetch(l, [&](const auto& fetch) { return fetch(static_cast<size_t>(y) * l.width + x); });
   }
 
@@ -247,12 +292,6 @@ class MipMap::Sampler {
   }
 
  private:
-  template <WrapMode Along>
-  static float reduce(float v) {
-    if constexpr (Along == WrapMode::Repeat) return v - std::floor(v);
-    return std::clamp(v, -1e4f, 1e4f);
-  }
-
   // A level the pyramid does not have is noted, and the finest that it has taken in its place.
   const Level& use(int level) {
     finest_ = std::min(finest_, level);
@@ -320,13 +359,13 @@ class MipMap::Sampler {
   // The weighted sum of the texels in an ellipse, and the sum of the weights. `first` is the level's first number. Each
   // column of a block has a sum of its own: a single one would wait for itself from texel to texel.
   template <bool kFinite, class T, class Fetch>
-  static Texel<C> weigh(const Ellipse& e, const Level& l, const T* first, float& weight_sum, const Fetch& fetch) {
+  Texel<C> weigh(const Ellipse& e, const Level& l, const T* first, float& weight_sum, const Fetch& fetch) const {
     constexpr int kColumns = BlockWeights::kColumns;
     Texel<C> sums[kColumns]{};
     Vector4 weights{};
     for (int x0 = e.s0; x0 <= e.s1; x0 += kColumns) {
       int column[kColumns];
-      for (int k = 0; k < kColumns; ++k) column[k] = wrap_texel<kAlongS>(x0 + k, l.width) * C;
+      for (int k = 0; k < kColumns; ++k) column[k] = wrap_.along_s(x0 + k, l.width) * C;
       const Ellipse::Rows range = e.rows_of(x0, kColumns);
       for (int y0 = range.first; y0 <= range.last; y0 += BlockWeights::kRows) {
         const BlockWeights block(e, x0, y0);
@@ -334,12 +373,12 @@ class MipMap::Sampler {
         for (int j = 0; j < rows; ++j) {
           const float* const w = block.weight + j * kColumns;
           weights += Vector4{w[0], w[1], w[2], w[3]};
-          const int row = wrap_texel<kAlongT>(y0 + j, l.height);
-          if (W == WrapMode::Black && row < 0) continue;
+          const int row = wrap_.along_t(y0 + j, l.height);
+          if (Wrap::kMayBeBlack && row < 0) continue;
           const auto* const texels = first + static_cast<size_t>(row) * l.width * C;
           for (int k = 0; k < kColumns; ++k) {
             if (!kFinite && w[k] == 0) continue;
-            if (W != WrapMode::Black || column[k] >= 0) sums[k] += w[k] * fetch(texels + column[k]);
+            if (!Wrap::kMayBeBlack || column[k] >= 0) sums[k] += w[k] * fetch(texels + column[k]);
           }
         }
       }
@@ -349,6 +388,7 @@ class MipMap::Sampler {
   }
 
   const MipMap& map_;
+  [[no_unique_address]] const Wrap wrap_;
   const int last_, held_;  // the coarsest level; the finest that is there
   int finest_;
 };
@@ -361,10 +401,11 @@ int MipMap::with_sampler(const F& f) const {
     return sampler.finest();
   };
   switch (wrap_) {
-    case WrapMode::Repeat: return run(Sampler<C, WrapMode::Repeat>(*this));
-    case WrapMode::Black: return run(Sampler<C, WrapMode::Black>(*this));
-    case WrapMode::LatLong: return run(Sampler<C, WrapMode::LatLong>(*this));
-    default: return run(Sampler<C, WrapMode::Clamp>(*this));
+    case WrapMode::Repeat: return run(Sampler<C, FixedWrap<WrapMode::Repeat>>(*this, {}));
+    case WrapMode::Black: return run(Sampler<C, FixedWrap<WrapMode::Black>>(*this, {}));
+    case WrapMode::Clamp: return run(Sampler<C, FixedWrap<WrapMode::Clamp>>(*this, {}));
+    case WrapMode::LatLong: return run(Sampler<C, FixedWrap<WrapMode::LatLong>>(*this, {}));
+    default: return run(Sampler<C, AnyWrap>(*this, AnyWrap(wrap_)));
   }
 }
 

@@ -47,8 +47,8 @@ int PngHeader::numbers() const {
   }
 }
 
-PngStream::PngStream(const std::string& path)
-    : file_(open_to_read(path)), inflate_(std::make_unique<inflate_state>()), buffer_(kBuffer) {
+PngStream::PngStream(const PictureFile& picture)
+    : file_(open_to_read(picture)), inflate_(std::make_unique<inflate_state>()), buffer_(kBuffer) {
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // pixels are read in larger pieces than its own
   read_header();
   find_pixels();
@@ -127,6 +127,11 @@ void PngStream::find_pixels() {
       const std::vector<uint8_t> colours = small_chunk(chunk, palette.size());
       std::copy(colours.begin(), colours.end(), palette.begin());
       has_palette = true;
+    } else if (is(chunk.type, "tRNS") && header.colour == PngHeader::Palette) {
+      const std::vector<uint8_t> alphas = small_chunk(chunk, palette_alpha.size());
+      palette_alpha.fill(255);
+      std::copy(alphas.begin(), alphas.end(), palette_alpha.begin());
+      has_palette_alpha = true;
     } else if ((chunk.type[0] & 0x20) == 0) {
       fail("it has a critical chunk that PNG does not have");
     } else {

@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <string>
 #include <vector>
+
+#include "core/image/image.h"
 
 struct inflate_state;
 
@@ -30,7 +31,7 @@ struct PngHeader {
 /// An open file, read up to its pixels. Throws std::runtime_error with the reason.
 class PngStream {
  public:
-  explicit PngStream(const std::string& path);
+  explicit PngStream(const PictureFile& picture);
   ~PngStream();
 
   /// The next `n` bytes of the rows, each row behind the number of its filter.
@@ -42,7 +43,9 @@ class PngStream {
   static size_t memory();
 
   PngHeader header;
-  std::array<uint8_t, 3 * 256> palette{};  ///< Colours; black where the file has none.
+  std::array<uint8_t, 3 * 256> palette{};    ///< Colours; black where the file has none.
+  std::array<uint8_t, 256> palette_alpha{};  ///< Of the colours, where `has_palette_alpha`.
+  bool has_palette_alpha = false;
 
  private:
   struct Chunk {

@@ -48,9 +48,14 @@ bool ends_with(const std::string& path, std::string_view extension) {
                     [](char a, char b) { return a == (b >= 'A' && b <= 'Z' ? b - 'A' + 'a' : b); });
 }
 
-// The first bytes of a file; zeros when it has not that many or cannot be read.
-Bytes beginning(const std::string& path) {
+// The first bytes of a picture; zeros when it has not that many or cannot be read.
+Bytes beginning(const PictureFile& picture) {
   Bytes bytes{};
+  if (picture.bytes) {
+    if (picture.bytes->bytes.size() >= kLength) std::copy_n(picture.bytes->bytes.begin(), kLength, bytes.begin());
+    return bytes;
+  }
+  const std::string& path = picture.path;
   const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return bytes;
   if (read(file, bytes.data(), kLength) != static_cast<ssize_t>(kLength)) bytes = {};
@@ -60,16 +65,16 @@ Bytes beginning(const std::string& path) {
 
 }  // namespace
 
-bool begins_like_a_picture(const std::string& path) {
-  const Bytes b = beginning(path);
-  return is_png(b) || is_jpg(b) || is_exr(b) || (ends_with(path, ".tga") && is_tga(b));
+bool begins_like_a_picture(const PictureFile& file) {
+  const Bytes b = beginning(file);
+  return is_png(b) || is_jpg(b) || is_exr(b) || (ends_with(file.path, ".tga") && is_tga(b));
 }
 
-PictureKind kind_of_picture(const std::string& path) {
-  const Bytes b = beginning(path);
+PictureKind kind_of_picture(const PictureFile& file) {
+  const Bytes b = beginning(file);
   if (is_png(b)) return PictureKind::Png;
   if (is_jpg(b)) return PictureKind::Jpeg;
-  return ends_with(path, ".tga") && is_common_tga(b) ? PictureKind::Tga : PictureKind::Other;
+  return ends_with(file.path, ".tga") && is_common_tga(b) ? PictureKind::Tga : PictureKind::Other;
 }
 
 }  // namespace whit

@@ -32,6 +32,10 @@ float lanczos(float x, float tau) {
 int wrap_index(int i, int n, WrapMode wrap) {
   if (wrap == WrapMode::Repeat) return ((i % n) + n) % n;
   if (wrap == WrapMode::Clamp) return std::clamp(i, 0, n - 1);
+  if (wrap == WrapMode::Mirror) {
+    const int twice = ((i % (2 * n)) + 2 * n) % (2 * n);
+    return std::min(twice, 2 * n - 1 - twice);
+  }
   return i >= 0 && i < n ? i : -1;
 }
 
@@ -71,12 +75,16 @@ bool default_gamma(const std::string& path, const ImageInfo& info) {
   return info.format == SampleFormat::UInt8;
 }
 
-TexelRows::TexelRows(const ImageInfo& image, bool single, bool gamma, float scale)
+TexelRows::TexelRows(const ImageInfo& image, Take take, bool gamma, float scale)
     : width_(image.width), pixel_(image.channels), gamma_(gamma), scale_(scale) {
   const std::vector<int> rgb = image.rgb_channels();
   std::copy_n(rgb.begin(), 3, rgb_.begin());
+  if (take == Take::Alpha) {
+    one_everywhere_ = image.alpha_channel() < 0;
+    rgb_.fill(std::max(0, image.alpha_channel()));
+  }
   grey_ = rgb[0] == rgb[1] && rgb[1] == rgb[2];
-  channels_ = single || grey_ ? 1 : 3;
+  channels_ = take != Take::Rgb || grey_ ? 1 : 3;
   of_byte_ = byte_values(gamma);
   for (float& v : of_byte_) v *= scale;
   for (int i = 0; i < 256; ++i) of_grey_[i] = decode(luminance(RGB(byte_value(static_cast<uint8_t>(i)))));
@@ -99,6 +107,7 @@ void TexelRows::select(const Number* p, Out* to, const Value& value, const Lumin
 
 // The luminance is of undecoded numbers. Most pictures for numbers are grey, whatever they are stored as.
 void TexelRows::convert(const uint8_t* pixels, float* texels) const {
+  if (one_everywhere_) return static_cast<void>(std::fill_n(texels, width_, decode(1)));
   select(
       pixels, texels, [table = of_byte_.data()](uint8_t v) { return table[v]; },
       [this](uint8_t r, uint8_t g, uint8_t b) {
@@ -107,18 +116,20 @@ void TexelRows::convert(const uint8_t* pixels, float* texels) const {
 }
 
 void TexelRows::convert(const float* pixels, float* texels) const {
+  if (one_everywhere_) return static_cast<void>(std::fill_n(texels, width_, decode(1)));
   select(
       pixels, texels, [this](float v) { return decode(v); },
       [this](float r, float g, float b) { return decode(luminance(RGB(r, g, b))); });
 }
 
 void TexelRows::pick(const uint8_t* pixels, uint8_t* numbers) const {
+  if (one_everywhere_) return static_cast<void>(std::fill_n(numbers, width_, uint8_t{255}));
   const auto same = [](uint8_t v) { return v; };
   select(pixels, numbers, same, [](uint8_t r, uint8_t, uint8_t) { return r; });
 }
 
 Texels make_texels(const Image& image, bool single, bool gamma, float scale, bool flip) {
-  const TexelRows rows(image, single, gamma, scale);
+  const TexelRows rows(image, single ? TexelRows::Take::Luminance : TexelRows::Take::Rgb, gamma, scale);
   Texels out{image.width, image.height, rows.channels(), {}};
   const size_t row = area(out.width, out.channels);
   out.values.resize(row * image.height);

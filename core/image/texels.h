@@ -31,11 +31,15 @@ struct Texels {
   std::vector<float> values;  ///< height x width x channels; row 0 is t = 0.
 };
 
-/// From rows of pixels to rows of texels: `single` makes one channel, the Rec.709 luminance of the raw numbers; otherwise
-/// three, or one when the picture is grey. Then sRGB decoding if `gamma`, then times `scale`. Alpha is ignored.
+/// From rows of pixels to rows of texels. Then sRGB decoding if `gamma`, then times `scale`.
 class TexelRows {
  public:
-  TexelRows(const ImageInfo& image, bool single, bool gamma, float scale);
+  enum class Take : uint8_t {
+    Rgb,        ///< Three channels, or one when the picture is grey.
+    Luminance,  ///< One channel, the Rec.709 luminance of the raw numbers.
+    Alpha       ///< One channel, 1 of pictures that have none.
+  };
+  TexelRows(const ImageInfo& image, Take take, bool gamma, float scale);
   int channels() const { return channels_; }
   void convert(const uint8_t* pixels, float* texels) const;
   void convert(const float* pixels, float* texels) const;
@@ -49,6 +53,7 @@ class TexelRows {
   float decode(float v) const { return scale_ * (gamma_ ? srgb_decode(v) : v); }
 
   int width_ = 0, pixel_ = 0, channels_ = 0;  // pixel_: numbers of one in the picture
+  bool one_everywhere_ = false;               // alpha that is not there
   std::array<int, 3> rgb_{};
   bool grey_, gamma_;
   float scale_;

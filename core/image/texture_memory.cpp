@@ -12,6 +12,10 @@
 namespace whit {
 namespace {
 
+PictureFile picture_of(const TextureSpec& spec) {
+  return spec.bytes ? PictureFile(spec.bytes) : PictureFile(spec.path);
+}
+
 /// Adds the time of the thread's processor to a sum of nanoseconds.
 class ThreadTime {
  public:
@@ -114,17 +118,22 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
 // What a lookup needs to tell its level: the picture's size. Called, as the next, with the source's mutex held.
 void TextureMemory::open(TextureSource& source) {
   const TextureSpec& spec = source.spec_;
-  source.rows_ = open_picture(spec.path);
+  source.rows_ = open_picture(picture_of(spec));
   const ImageInfo& info = source.rows_->info;
   const bool gamma = spec.gamma.value_or(default_gamma(spec.path, info));
-  source.options_ = {spec.kind == TextureKind::Float, spec.wrap, gamma, spec.scale, spec.flip};
+  source.options_ = {.single = spec.kind == TextureKind::Float,
+                     .alpha = spec.channel == TextureChannel::Alpha,
+                     .wrap = spec.wrap,
+                     .gamma = gamma,
+                     .scale = spec.scale,
+                     .flip = spec.flip};
   source.pyramid_ = source.outline_ = std::make_shared<MipMap>(info, source.options_);
 }
 
 void TextureMemory::decode(TextureSource& source, int level) {
   const int first = std::max(0, std::min<int>(level, source.finest_) - kSpareLevels);
   replace(source, source.outline_, false);
-  const auto rows = source.rows_ ? std::move(source.rows_) : open_picture(source.spec_.path);
+  const auto rows = source.rows_ ? std::move(source.rows_) : open_picture(picture_of(source.spec_));
   Workspace workspace(*this, MipMap::bytes_to_build(*rows, source.options_, first), source);
   std::unique_ptr<const MipMap> map;
   try {

@@ -12,6 +12,26 @@
 
 namespace whit {
 
+namespace {
+
+// Of a texture that is one of three channels, which: those share what is decoded of the picture. -1 of others.
+int channel_of_rgb(const TextureSpec& spec) {
+  const bool one_of_three = spec.kind == TextureKind::Float && spec.channel != TextureChannel::Luminance &&
+                            spec.channel != TextureChannel::Alpha;
+  return one_of_three ? static_cast<int>(spec.channel) - static_cast<int>(TextureChannel::Red) : -1;
+}
+
+// What is decoded for a texture.
+TextureSpec source_of(TextureSpec spec) {
+  if (channel_of_rgb(spec) >= 0) spec.kind = TextureKind::Rgb;
+  if (spec.kind == TextureKind::Rgb) spec.channel = TextureChannel::Luminance;
+  if (spec.channel == TextureChannel::Alpha) spec.gamma = false;
+  if (spec.bytes) spec.path = spec.bytes->name;
+  return spec;
+}
+
+}  // namespace
+
 ImageTexture::ImageTexture(TextureMemory& memory, TextureSource& source, TextureSpec spec)
     : memory_(memory), source_(source), spec_(std::move(spec)) {}
 
@@ -74,6 +94,10 @@ void ImageTexture::lookup_float(int n, const float* s, const float* t, const flo
       float* const channels[3] = {rgb[0].data(), rgb[1].data(), rgb[2].data()};
       const LookupPoints chunk{count, s + first, t + first, from(dsdx), from(dtdx), from(dsdy), from(dtdy)};
       level = std::min(level, map.lookup(chunk, filter, channels));
+      if (const int c = channel_of_rgb(spec_); c >= 0) {
+        std::copy_n(channels[c], count, out + first);
+        continue;
+      }
       for (int i = 0; i < count; ++i) out[first + i] = luminance(RGB(rgb[0][i], rgb[1][i], rgb[2][i]));
     }
     return level;
@@ -83,8 +107,9 @@ void ImageTexture::lookup_float(int n, const float* s, const float* t, const flo
 
 // Which specs are the same: the first key's files are decoded alike.
 struct TextureStore::Textures {
-  using SourceKey = std::tuple<std::string, TextureKind, WrapMode, std::optional<bool>, float, bool>;
-  using TextureKey = std::tuple<SourceKey, TextureFilter, float>;
+  using SourceKey = std::tuple<std::string, const PictureBytes*, TextureKind, TextureChannel, WrapMode,
+                               std::optional<bool>, float, bool>;
+  using TextureKey = std::tuple<SourceKey, TextureKind, TextureChannel, TextureFilter, float>;
   std::mutex mutex;
   std::map<SourceKey, TextureSource*> sources;
   std::map<TextureKey, std::unique_ptr<ImageTexture>> textures;
@@ -96,11 +121,13 @@ TextureStore::TextureStore()
 TextureStore::~TextureStore() = default;
 
 const ImageTexture* TextureStore::add(const TextureSpec& spec, SourcePos where) {
-  const Textures::SourceKey source_key{spec.path, spec.kind, spec.wrap, spec.gamma, spec.scale, spec.flip};
+  const TextureSpec decoded = source_of(spec);
+  const Textures::SourceKey source_key{decoded.path, decoded.bytes.get(), decoded.kind,  decoded.channel,
+                                       decoded.wrap, decoded.gamma,       decoded.scale, decoded.flip};
   const std::lock_guard lock(textures_->mutex);
   TextureSource*& source = textures_->sources[source_key];
-  if (!source) source = &memory_->add(spec, where);
-  auto& texture = textures_->textures[{source_key, spec.filter, spec.max_anisotropy}];
+  if (!source) source = &memory_->add(decoded, where);
+  auto& texture = textures_->textures[{source_key, spec.kind, spec.channel, spec.filter, spec.max_anisotropy}];
   if (!texture) texture.reset(new ImageTexture(*memory_, *source, spec));
   return texture.get();
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "core/base/attachment.h"
 #include "core/base/diagnostics.h"
 #include "core/image/texture_kinds.h"
 
@@ -16,7 +17,9 @@ namespace whit {
 /// Everything that makes an image texture; two equal specs are one texture.
 struct TextureSpec {
   std::string path;
-  TextureKind kind = TextureKind::Rgb;  ///< Float takes the luminance, before gamma and scale.
+  std::shared_ptr<const PictureBytes> bytes;  ///< Where not null, the picture; `path` is then not looked at.
+  TextureKind kind = TextureKind::Rgb;
+  TextureChannel channel = TextureChannel::Luminance;  ///< Float only.
   WrapMode wrap = WrapMode::Repeat;
   std::optional<bool> gamma = false;  ///< Decode sRGB; if it is not said, by default_gamma().
   float scale = 1;
@@ -52,7 +55,7 @@ class ImageTexture {
   void lookup(int n, const float* s, const float* t, const float* dsdx, const float* dtdx, const float* dsdy,
               const float* dtdy, float* r, float* g, float* b) const;
 
-  /// n filtered numbers: the channel of a Float texture, the luminance of an RGB one.
+  /// n filtered numbers: TextureSpec::channel of a Float texture, the luminance of an RGB one.
   void lookup_float(int n, const float* s, const float* t, const float* dsdx, const float* dtdx, const float* dsdy,
                     const float* dtdy, float* out) const;
 

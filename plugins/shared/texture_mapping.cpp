@@ -68,7 +68,20 @@ void map_planar(const AffineMap& from_render, const ShadingBatch& s, const Mappe
   });
 }
 
+void map_uv_turned(const TextureMapping2D& uv, const ShadingBatch& s, const MappedPoints& m) {
+  for_lanes(s.n, [&](int i) {
+    m.s[i] = uv.su * s.u[i] + uv.s_of_v * s.v[i] + uv.du;
+    m.t[i] = uv.t_of_u * s.u[i] + uv.sv * s.v[i] + uv.dv;
+  });
+  if (!s.has_footprint()) return;
+  for_lanes(s.n, [&](int i) {
+    m.dsdx[i] = uv.su * s.dudx[i] + uv.s_of_v * s.dvdx[i], m.dtdx[i] = uv.t_of_u * s.dudx[i] + uv.sv * s.dvdx[i];
+    m.dsdy[i] = uv.su * s.dudy[i] + uv.s_of_v * s.dvdy[i], m.dtdy[i] = uv.t_of_u * s.dudy[i] + uv.sv * s.dvdy[i];
+  });
+}
+
 void map_uv(const TextureMapping2D& uv, const ShadingBatch& s, const MappedPoints& m) {
+  if (uv.turns) return map_uv_turned(uv, s, m);
   for_lanes(s.n, [&](int i) { m.s[i] = uv.su * s.u[i] + uv.du, m.t[i] = uv.sv * s.v[i] + uv.dv; });
   if (!s.has_footprint()) return;
   for_lanes(s.n, [&](int i) {
@@ -111,6 +124,16 @@ TextureMapping2D Texture2D<T>::make_mapping(int kind, const UvParameters& uv, co
   TextureMapping2D m;
   m.kind = static_cast<TextureMapping2D::Kind>(kind);
   m.su = uv.su, m.sv = uv.sv, m.du = uv.du, m.dv = uv.dv;
+  if (uv.matrix.size() == 6) {
+    // The matrix, then scale and shift: in one, rounded once.
+    const auto scaled = [&](float scale, size_t i) { return static_cast<float>(double{scale} * uv.matrix[i]); };
+    const auto shifted = [&](float scale, float shift, size_t i) {
+      return static_cast<float>(double{scale} * uv.matrix[i] + double{shift});
+    };
+    m.su = scaled(uv.su, 0), m.s_of_v = scaled(uv.su, 1), m.du = shifted(uv.su, uv.du, 2);
+    m.t_of_u = scaled(uv.sv, 3), m.sv = scaled(uv.sv, 4), m.dv = shifted(uv.sv, uv.dv, 5);
+    m.turns = m.s_of_v != 0 || m.t_of_u != 0;
+  }
   // The planar mapping takes world points as they are: pbrt-v3 ignores the CTM there.
   if (m.kind == TextureMapping2D::Planar)
     m.from_render = AffineMap(space.to_world() * planar_matrix(v1, v2, uv.du, uv.dv));

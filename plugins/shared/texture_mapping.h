@@ -30,8 +30,10 @@ struct AffineMap {
 /// A 2D mapping, ready to map.
 struct TextureMapping2D {
   enum Kind { Uv, Spherical, Cylindrical, Planar } kind = Uv;
-  float su = 1, sv = 1, du = 0, dv = 0;  ///< Uv.
-  AffineMap from_render;                 ///< Spherical, Cylindrical: to texture space. Planar: x gives s, y gives t.
+  float su = 1, sv = 1, du = 0, dv = 0;  ///< Uv: s = su u + du, t = sv v + dv,
+  float s_of_v = 0, t_of_u = 0;          ///< and these times the other; `turns` where they are not 0.
+  bool turns = false;
+  AffineMap from_render;  ///< Spherical, Cylindrical: to texture space. Planar: x gives s, y gives t.
 
   MappedPoints map(const ShadingBatch& s) const;
 };
@@ -45,7 +47,14 @@ class Texture2D : public Texture<T> {
  public:
   Choice mapping;  ///< As TextureMapping2D::Kind.
   float uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
+  FloatList uvmatrix;  ///< 6, or none.
   Vector v1, v2;
+
+  void check(Diagnostics& diagnostics, SourcePos) override {
+    if (uvmatrix.given && uvmatrix.size() != 6)
+      diagnostics.error(uvmatrix.where, "\"uvmatrix\" has " + std::to_string(uvmatrix.size()) + " numbers",
+                        "it takes 6: s = m0 u + m1 v + m2, t = m3 u + m4 v + m5");
+  }
 
   bool read(Diagnostics& diagnostics, SourcePos statement) override {
     if (mapping.index == TextureMapping2D::Uv || is_invertible(this->texture_to_world)) return true;
@@ -55,8 +64,8 @@ class Texture2D : public Texture<T> {
   }
 
   bool prepare(const PrepareContext& ctx) override {
-    map_ = make_mapping(mapping.index, {uscale, vscale, udelta, vdelta}, v1.value, v2.value, this->texture_to_world,
-                        ctx.space);
+    map_ = make_mapping(mapping.index, {uscale, vscale, udelta, vdelta, uvmatrix.values}, v1.value, v2.value,
+                        this->texture_to_world, ctx.space);
     return true;
   }
 
@@ -66,6 +75,7 @@ class Texture2D : public Texture<T> {
  private:
   struct UvParameters {
     float su, sv, du, dv;
+    std::span<const double> matrix;
   };
   static TextureMapping2D make_mapping(int kind, const UvParameters& uv, const Vec3d& v1, const Vec3d& v2,
                                        const Mat4d& texture_to_world, const RenderSpace& space);
@@ -92,6 +102,10 @@ class Register2D : public Register<Plugin2D> {
             param(&Texture2D<T>::vscale, "vscale", 1.0f, Unit::None, "Repeats along v (uv mapping)."),
             param(&Texture2D<T>::udelta, "udelta", 0.0f, Unit::None, "Shift along u (uv and planar mapping)."),
             param(&Texture2D<T>::vdelta, "vdelta", 0.0f, Unit::None, "Shift along v (uv and planar mapping)."),
+            param(
+                &Texture2D<T>::uvmatrix, "uvmatrix", Unit::None,
+                "Six numbers m that take (u, v) to (m0 u + m1 v + m2, m3 u + m4 v + m5), before scale and shift; none "
+                "leave it as it is (uv mapping)."),
             param(&Texture2D<T>::v1, "v1", Vector{{1, 0, 0}}, Unit::None,
                   "World-space direction of s, one over the length of a repeat (planar mapping)."),
             param(&Texture2D<T>::v2, "v2", Vector{{0, 1, 0}}, Unit::None,

@@ -9,11 +9,14 @@
 namespace whit {
 namespace {
 
+constexpr WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::Mirror};
+
 template <class T>
 class ImageMap : public Texture2D<T> {
  public:
   FileName filename;
-  Choice wrap;  // in the order of WrapMode
+  Choice wrap, wrapu, wrapv;  // in the order of kWraps; the last two have "as wrap" first
+  Choice channel;             // in the order of TextureChannel
   std::optional<bool> gamma;
   float scale = 1, maxanisotropy = 8;
   bool trilinear = false;
@@ -23,28 +26,37 @@ class ImageMap : public Texture2D<T> {
     return kind_of_filter() == TextureFilter::Point ? EffectSet{} : Texture2D<T>::effects();
   }
 
+  void attach(std::shared_ptr<const Attachment> picture) override {
+    bytes_ = std::dynamic_pointer_cast<const PictureBytes>(std::move(picture));
+  }
+
   void check(Diagnostics& diagnostics, SourcePos statement) override {
-    if (filename.empty()) diagnostics.error(statement, "imagemap needs a \"string filename\"");
+    Texture2D<T>::check(diagnostics, statement);
+    if (filename.empty() && !bytes_) diagnostics.error(statement, "imagemap needs a \"string filename\"");
   }
 
   bool read(Diagnostics& diagnostics, SourcePos statement) override {
     if (!Texture2D<T>::read(diagnostics, statement)) return false;
-    if (begins_like_a_picture(filename.path)) return true;
-    const Result<ImageInfo> info = probe_image(filename.path);
-    if (!info.ok()) diagnostics.file_error(filename.where, info.error);
+    const PictureFile picture = bytes_ ? PictureFile(bytes_) : PictureFile(filename.path);
+    if (begins_like_a_picture(picture)) return true;
+    const Result<ImageInfo> info = probe_image(picture);
+    if (!info.ok()) diagnostics.file_error(bytes_ ? statement : filename.where, info.error);
     return info.ok();
   }
 
   bool prepare(const PrepareContext& ctx) override {
     TextureSpec spec;
     spec.path = filename.path;
+    spec.bytes = bytes_;
     spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;
-    spec.wrap = static_cast<WrapMode>(wrap.index);
+    spec.channel = static_cast<TextureChannel>(channel.index);
+    const auto along = [&](const Choice& axis) { return kWraps[axis.index > 0 ? axis.index - 1 : wrap.index]; };
+    spec.wrap = wrap_of(along(wrapu), along(wrapv));
     spec.gamma = gamma;
     spec.scale = scale;
     spec.filter = kind_of_filter();
     spec.max_anisotropy = maxanisotropy;
-    image_ = ctx.textures->add(spec, filename.where);
+    image_ = ctx.textures->add(spec, bytes_ ? ctx.statement : filename.where);
     return Texture2D<T>::prepare(ctx);
   }
 
@@ -61,6 +73,7 @@ class ImageMap : public Texture2D<T> {
     return trilinear && chosen == TextureFilter::Ewa ? TextureFilter::Trilinear : chosen;
   }
 
+  std::shared_ptr<const PictureBytes> bytes_;
   const ImageTexture* image_ = nullptr;
 };
 
@@ -71,13 +84,17 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
   using I = ImageMap<T>;
 
  public:
-  RegisterImageMap()
+  template <class... OfOneKind>
+  explicit RegisterImageMap(OfOneKind... of_one_kind)
       : Register2D<I, T>(
             "imagemap", kDoc,
             param(&I::filename, "filename", Unit::None,
                   "The picture's file, in any format that OpenImageIO reads. Required."),
-            choice(&I::wrap, "wrap", {"repeat", "black", "clamp"},
-                   "What lies outside the unit square: the picture again, black, or its border."),
+            choice(&I::wrap, "wrap", {"repeat", "black", "clamp", "mirror"},
+                   "What lies outside the unit square: the picture again, black, its border, or the picture mirrored."),
+            choice(&I::wrapu, "wrapu", {"as wrap", "repeat", "black", "clamp", "mirror"}, "The same along s alone."),
+            choice(&I::wrapv, "wrapv", {"as wrap", "repeat", "black", "clamp", "mirror"}, "The same along t alone."),
+            of_one_kind...,
             param(&I::gamma, "gamma", Unit::None,
                   "Decodes sRGB. By default true for png and tga files, for others what the file says of itself, else "
                   "true "
@@ -94,7 +111,10 @@ class RegisterImageMap : public Register2D<ImageMap<T>, T> {
                   kPositive)) {}
 };
 
-const RegisterImageMap<float> imagemap_float;
+const RegisterImageMap<float> imagemap_float{choice(
+    &ImageMap<float>::channel, "channel", {"luminance", "red", "green", "blue", "alpha"},
+    "What of the picture: the luminance of its numbers as they are stored, decoded after that, as pbrt-v3; or one "
+    "of its channels. Alpha is never decoded, and 1 where the picture has none.")};
 const RegisterImageMap<RGB> imagemap_spectrum;
 
 }  // namespace

@@ -139,6 +139,22 @@ constexpr struct {
 } kPngKinds[] = {{1, 0}, {2, 0}, {4, 0}, {8, 0}, {16, 0}, {8, 2}, {16, 2}, {1, 3},
                  {2, 3}, {4, 3}, {8, 3}, {8, 4}, {16, 4}, {8, 6}, {16, 6}};
 
+TEST(DecodePng, a_palette_may_have_alpha) {
+  // Two alphas for three colours: the third is opaque.
+  const PngPicture p = random_png(9, 4, 8, 3);
+  std::string file = png_file(p, false);
+  const size_t at = file.find("IDAT") - 4;
+  file.insert(at, chunk("tRNS", std::string("\x00\x80", 2)));
+  const auto rows = open_png(write_temp("transparent.png", file));
+  ASSERT_EQ(rows->info.alpha_channel(), 3);
+  const std::vector<float> numbers = numbers_of(*rows), colours = expected_of(p);
+  for (size_t i = 0; i < p.numbers.size(); ++i) {
+    for (size_t c = 0; c < 3; ++c) ASSERT_EQ(numbers[4 * i + c], colours[3 * i + c]);
+    const float alphas[] = {0, 128, 255};
+    ASSERT_EQ(numbers[4 * i + 3], alphas[p.numbers[i]]);
+  }
+}
+
 TEST(DecodePng, every_kind_by_every_filter_in_order_and_interlaced) {
   for (const auto& kind : kPngKinds) {
     if (kind.type == 3 && kind.bits == 1) continue;  // three colours

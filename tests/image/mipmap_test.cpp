@@ -56,11 +56,17 @@ struct Reference {
     }
   }
   int last() const { return static_cast<int>(levels.size()) - 1; }
+  static int wrapped(WrapMode mode, int i, int n) {
+    const auto modulo = [](int a, int b) { return ((a % b) + b) % b; };
+    if (mode == WrapMode::Repeat) return modulo(i, n);
+    if (mode == WrapMode::Clamp) return std::clamp(i, 0, n - 1);
+    // There and back: 0 1 2 2 1 0 0 1 ...
+    if (mode == WrapMode::Mirror) return modulo(i, 2 * n) < n ? modulo(i, n) : n - 1 - modulo(i, n);
+    return i;
+  }
   double texel(int level, int s, int t) const {
     const Level& l = levels[static_cast<size_t>(level)];
-    if (wrap == WrapMode::Repeat) s = ((s % l.w) + l.w) % l.w, t = ((t % l.h) + l.h) % l.h;
-    if (wrap == WrapMode::Clamp) s = std::clamp(s, 0, l.w - 1), t = std::clamp(t, 0, l.h - 1);
-    if (wrap == WrapMode::LatLong) s = ((s % l.w) + l.w) % l.w, t = std::clamp(t, 0, l.h - 1);
+    s = wrapped(wrap_along_s(wrap), s, l.w), t = wrapped(wrap_along_t(wrap), t, l.h);
     if (s < 0 || s >= l.w || t < 0 || t >= l.h) return 0;
     return l.v[static_cast<size_t>(t * l.w + s)];
   }
@@ -157,7 +163,14 @@ std::vector<float> look(const MipMap& map, const LookupPoints& points, const Mip
 }
 
 constexpr TextureFilter kFilters[] = {TextureFilter::Ewa, TextureFilter::Trilinear, TextureFilter::Point};
-const WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::LatLong};
+const WrapMode kWraps[] = {WrapMode::Repeat,
+                           WrapMode::Black,
+                           WrapMode::Clamp,
+                           WrapMode::Mirror,
+                           WrapMode::LatLong,
+                           wrap_of(WrapMode::Clamp, WrapMode::Repeat),
+                           wrap_of(WrapMode::Mirror, WrapMode::Black),
+                           wrap_of(WrapMode::Black, WrapMode::Mirror)};
 
 TEST(MipMap, pyramid_shape) {
   const MipMap map(picture(8, 2, 3), {});
@@ -181,12 +194,57 @@ TEST(MipMap, bilinear_by_hand) {
 
 TEST(MipMap, wrap_modes_by_hand) {
   // One row 1, 3. At s = 0 the two nearest texels are the first and the one before it: repeat 3 -> 2, clamp 1 -> 1,
-  // black 0 -> 0.5.
+  // black 0 -> 0.5, mirror 1 -> 1.
   Image image = picture(2, 1, 1);
   image.pixels = {1, 3};
   const float s[] = {0}, t[] = {0.5f};
-  const float expected[] = {2, 0.5f, 1};
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(look(MipMap(image, {.wrap = kWraps[i]}), {1, s, t}, {})[0], expected[i]);
+  const float expected[] = {2, 0.5f, 1, 1};
+  for (int i = 0; i < 4; ++i) EXPECT_EQ(look(MipMap(image, {.wrap = kWraps[i]}), {1, s, t}, {})[0], expected[i]);
+}
+
+TEST(MipMap, axes_have_wrap_modes_of_their_own) {
+  // Texels 1 2 / 4 8, nearest. To the right of the square s = 1.25 is column 0 again, 1 mirrored, 1 clamped or nothing;
+  // above it t = 1.25 the same of rows.
+  Image image = picture(2, 2, 1);
+  image.pixels = {1, 2, 4, 8};
+  const WrapMode modes[] = {WrapMode::Repeat, WrapMode::Mirror, WrapMode::Clamp, WrapMode::Black};
+  const int column[] = {0, 1, 1, -1};
+  const float at[] = {1.25f}, inside[] = {0.25f};
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < 4; ++b) {
+      const MipMap map(image, {.wrap = wrap_of(modes[a], modes[b]), .flip = false});
+      const int x = column[a], y = column[b];
+      EXPECT_EQ(look(map, {1, at, at}, {TextureFilter::Point})[0], x < 0 || y < 0 ? 0.0f : image.pixels[2 * y + x]);
+      EXPECT_EQ(look(map, {1, at, inside}, {TextureFilter::Point})[0], x < 0 ? 0.0f : image.pixels[x]);
+      EXPECT_EQ(look(map, {1, inside, at}, {TextureFilter::Point})[0], y < 0 ? 0.0f : image.pixels[2 * y]);
+    }
+  // Mirrored, the texture has the period 2 and is the same forwards and backwards, also far away.
+  const MipMap map(image, {.wrap = WrapMode::Mirror, .flip = false});
+  for (const float s : {0.1f, 0.4f, 0.8f}) {
+    const float here[] = {s}, there[] = {-s}, far[] = {s + 4096}, back[] = {2 - s};
+    const float value = look(map, {1, here, here}, {})[0];
+    EXPECT_NEAR(look(map, {1, there, there}, {})[0], value, 1e-6f);
+    EXPECT_NEAR(look(map, {1, back, back}, {})[0], value, 1e-5f);
+    EXPECT_NEAR(look(map, {1, far, far}, {})[0], value, 1e-2f);  // floats near 4096 are 5e-4 apart, times 14 per unit
+  }
+}
+
+TEST(MipMap, alpha_is_a_channel_that_gamma_leaves_alone_and_1_where_there_is_none) {
+  for (const bool power_of_two : {true, false})
+    for (const bool bytes : {true, false})
+      for (const int channels : {1, 2, 3, 4}) {
+        Image image = picture(power_of_two ? 4 : 3, 1, channels);
+        image.channel_names = channels < 3 ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+        if (channels % 2 == 0) image.channel_names.push_back("A");
+        // All of one value: enlarging keeps it up to rounding.
+        for (size_t i = 0; i < image.pixels.size(); ++i)
+          image.pixels[i] = static_cast<int>(i) % channels == channels - 1 ? 0.2f : 0.6f;
+        const MipMapOptions options{.single = true, .alpha = true, .gamma = false, .scale = 3};
+        const MipMap map = bytes ? MipMap(bytes_of(image), options) : MipMap(image, options);
+        EXPECT_EQ(map.channels(), 1);
+        const float s[] = {0.4f}, t[] = {0.5f};
+        EXPECT_NEAR(look(map, {1, s, t}, {})[0], channels % 2 == 0 ? 0.6f : 3.0f, 1e-3f) << channels;
+      }
 }
 
 TEST(MipMap, filters_follow_the_formulas) {

@@ -89,7 +89,7 @@ TEST(Texels, bytes_give_the_bits_that_their_quotients_give) {
   for (const uint8_t v : bytes.pixels) floats.pixels.push_back(static_cast<float>(v) / 255);
   for (const bool single : {false, true})
     for (const bool gamma : {false, true}) {
-      const TexelRows rows(bytes, single, gamma, 3);
+      const TexelRows rows(bytes, single ? TexelRows::Take::Luminance : TexelRows::Take::Rgb, gamma, 3);
       std::vector<float> a(16 * size_t(rows.channels())), b = a;
       for (int y = 0; y < 16; ++y) {
         rows.convert(bytes.pixel(0, y), a.data());
@@ -117,7 +117,7 @@ TEST(Resample, three_texels_become_four) {
   const double v[3] = {1, 4, 9};
   const double centre[4] = {0.375, 1.125, 1.875, 2.625};
   const int first[4] = {-2, -1, 0, 1};  // floor(centre - 1.5)
-  for (const WrapMode wrap : {WrapMode::Repeat, WrapMode::Clamp, WrapMode::Black}) {
+  for (const WrapMode wrap : {WrapMode::Repeat, WrapMode::Clamp, WrapMode::Black, WrapMode::Mirror}) {
     const Texels out = resample_to_power_of_two({3, 1, 1, {1, 4, 9}}, wrap);
     ASSERT_EQ(out.width, 4);
     ASSERT_EQ(out.height, 1);
@@ -128,6 +128,7 @@ TEST(Resample, three_texels_become_four) {
         weights += w;
         if (wrap == WrapMode::Repeat) sum += w * v[(j + 3) % 3];
         if (wrap == WrapMode::Clamp) sum += w * v[j < 0 ? 0 : j > 2 ? 2 : j];
+        if (wrap == WrapMode::Mirror) sum += w * v[j < 0 ? -1 - j : j > 2 ? 5 - j : j];
         if (wrap == WrapMode::Black && j >= 0 && j < 3) sum += w * v[j];
       }
       EXPECT_NEAR(out.values[static_cast<size_t>(i)], std::max(0.0, sum / weights), 1e-5) << i;

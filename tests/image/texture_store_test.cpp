@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "core/image/mipmap.h"
@@ -227,6 +228,93 @@ TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {
   EXPECT_EQ(errors.all()[0].where.file, 3u);
   EXPECT_EQ(errors.all()[0].where.offset, 40u);
   EXPECT_EQ(store.statistics().decodes, 0);
+}
+
+// The bytes of a file, as a model holds them.
+std::shared_ptr<PictureBytes> in_memory(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  auto all =
+      std::make_shared<std::vector<char>>(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  auto bytes = std::make_shared<PictureBytes>();
+  bytes->name = "model.glb: /images/3" + (path.ends_with(".tga") ? std::string(".tga") : std::string());
+  bytes->bytes = {reinterpret_cast<const uint8_t*>(all->data()), all->size()};
+  bytes->owner = all;
+  return bytes;
+}
+
+// A picture of 7 x 5 pixels in a format, by its extension.
+std::string coloured_file(const std::string& extension) {
+  const std::string path = fmt::format("{}/whit_store_colour.{}", test::temp_folder(), extension);
+  std::vector<float> rgb;
+  for (int i = 0; i < 7 * 5 * 3; ++i) rgb.push_back(static_cast<float>(i * 37 % 101) / 100);
+  OutputImage image;
+  image.width = 7, image.height = 5, image.rgb = rgb;
+  EXPECT_EQ(write_image(path, image).error, "");
+  return path;
+}
+
+std::vector<float> look_around(const ImageTexture* texture) {
+  std::vector<float> s, t;
+  for (int i = 0; i < 100; ++i) s.push_back(static_cast<float>(i % 10) / 10), t.push_back(static_cast<float>(i) / 100);
+  std::vector<float> r(100), g(100), b(100);
+  texture->lookup(100, s.data(), t.data(), nullptr, nullptr, nullptr, nullptr, r.data(), g.data(), b.data());
+  r.insert(r.end(), g.begin(), g.end()), r.insert(r.end(), b.begin(), b.end());
+  return r;
+}
+
+TEST(TextureStore, a_picture_in_memory_gives_the_bits_of_the_same_in_a_file) {
+  for (const char* extension : {"png", "jpg", "tga", "exr", "tif", "pfm"}) {
+    const std::string path = coloured_file(extension);
+    TextureStore store;
+    TextureSpec spec = spec_of(path);
+    spec.gamma.reset();
+    const std::vector<float> of_file = look_around(store.add(spec));
+    spec.path.clear(), spec.bytes = in_memory(path);
+    EXPECT_EQ(look_around(store.add(spec)), of_file) << extension;
+    EXPECT_EQ(store.statistics().decodes, 2);
+    EXPECT_TRUE(store.errors().all().empty()) << extension;
+    EXPECT_GT(*std::max_element(of_file.begin(), of_file.end()), 0.5f);
+  }
+}
+
+TEST(TextureStore, errors_name_pictures_in_memory_as_they_are_called) {
+  const std::string path = coloured_file("png");
+  for (const size_t size : {size_t{0}, size_t{20}, size_t{60}}) {
+    const auto bytes = in_memory(path);
+    bytes->bytes = bytes->bytes.first(size);
+    TextureStore store;
+    TextureSpec spec;
+    spec.bytes = bytes;
+    EXPECT_EQ(look(store.add(spec)), 0);
+    ASSERT_EQ(store.errors().all().size(), 1u) << size;
+    EXPECT_EQ(store.errors().all()[0].message.find("cannot read image \"model.glb: /images/3\": "), 0u);
+  }
+}
+
+TEST(TextureStore, channels_of_a_picture_share_what_is_decoded) {
+  // One pixel: red 51, green 102, blue 204 of 255; decoded by sRGB's curve where gamma asks.
+  const std::string path = fmt::format("{}/whit_store_channels.tga", test::temp_folder());
+  std::string tga(18, '\0');
+  tga[2] = 2, tga[12] = 1, tga[14] = 1, tga[16] = 32, tga[17] = 8;
+  std::ofstream(path, std::ios::binary) << tga << "\xcc\x66\x33\x99";
+  for (const bool gamma : {false, true}) {
+    TextureStore store;
+    const auto value = [&](TextureChannel channel) {
+      TextureSpec spec = spec_of(path, TextureKind::Float);
+      spec.channel = channel, spec.gamma = gamma;
+      const float s = 0.5f, t = 0.5f;
+      float out = -1;
+      store.add(spec)->lookup_float(1, &s, &t, nullptr, nullptr, nullptr, nullptr, &out);
+      return out;
+    };
+    const auto expected = [&](float v) { return gamma ? srgb_decode(v) : v; };
+    EXPECT_EQ(value(TextureChannel::Red), expected(51 / 255.0f));
+    EXPECT_EQ(value(TextureChannel::Green), expected(102 / 255.0f));
+    EXPECT_EQ(value(TextureChannel::Blue), expected(204 / 255.0f));
+    EXPECT_EQ(store.statistics().decodes, 1);
+    EXPECT_EQ(value(TextureChannel::Alpha), 153 / 255.0f);  // never decoded
+    EXPECT_EQ(store.statistics().decodes, 2);
+  }
 }
 
 }  // namespace

@@ -53,6 +53,49 @@ TEST(Mapping, UvScalesAndShifts) {
   EXPECT_EQ(out[0], RGB(0.25f, 0.75f, 0));
 }
 
+TEST(Mapping, AMatrixTurnsTextureCoordinatesAndTheirFootprints) {
+  // KHR_texture_transform's example: a rotation by 90 degrees, here (u, v) -> (v, 1 - u), scaled by 2 and shifted by 0.5
+  // along s after that. At (0.3, 0.2) that is (2 * 0.2 + 0.5, 0.7) = (0.9, 0.7).
+  auto uv = make_plugin<Texture<RGB>>(
+      "spectrum texture", "uv",
+      {test::floats("uvmatrix", {0, 1, 0, -1, 0, 1}), test::floats("uscale", {2}), test::floats("udelta", {0.5})});
+  ASSERT_TRUE(uv.silent());
+  uv.prepare();
+  ShadingPoints points(1);
+  points.set_flat(0, 0.3f, 0.2f);
+  RGBLanes out = points.arena.rgb(1);
+  uv->evaluate(points.s, out);
+  EXPECT_NEAR(out[0].x, 0.9f, 1e-6f);
+  EXPECT_NEAR(out[0].y, 0.7f, 1e-6f);
+  // A matrix without turns is the scales and shifts, to the bit.
+  points.randomise(3);
+  auto plain = make_plugin<Texture<RGB>>("spectrum texture", "uv",
+                                         {test::floats("uscale", {3}), test::floats("vscale", {-0.7}),
+                                          test::floats("udelta", {0.1}), test::floats("vdelta", {0.3})});
+  auto matrix =
+      make_plugin<Texture<RGB>>("spectrum texture", "uv", {test::floats("uvmatrix", {3, 0, 0.1, 0, -0.7, 0.3})});
+  plain.prepare(), matrix.prepare();
+  RGBLanes other = points.arena.rgb(1);
+  plain->evaluate(points.s, out), matrix->evaluate(points.s, other);
+  EXPECT_NEAR(out[0].x, other[0].x, 1e-6f);
+  EXPECT_EQ(out[0].y, other[0].y);
+  // Six numbers or none.
+  EXPECT_FALSE(make_plugin<Texture<RGB>>("spectrum texture", "uv", {test::floats("uvmatrix", {1, 0, 0, 1})}).good());
+}
+
+TEST(Mapping, FootprintsTurnWithTheMatrix) {
+  TextureMapping2D map;
+  map.su = 0.5f, map.s_of_v = 2, map.t_of_u = -3, map.sv = 0.25f, map.turns = true;
+  ShadingPoints points(1);
+  points.set_flat(0, 0.1f, 0.2f);
+  points.set_footprint(0, 0.01f, 0.02f, -0.03f, 0.04f);
+  const MappedPoints m = map.map(points.s);
+  EXPECT_FLOAT_EQ(m.dsdx[0], 0.5f * 0.01f + 2 * 0.02f);
+  EXPECT_FLOAT_EQ(m.dtdx[0], -3 * 0.01f + 0.25f * 0.02f);
+  EXPECT_FLOAT_EQ(m.dsdy[0], 0.5f * -0.03f + 2 * 0.04f);
+  EXPECT_FLOAT_EQ(m.dtdy[0], -3 * -0.03f + 0.25f * 0.04f);
+}
+
 /// What the bilerp texture with v01 = 0, v10 = v11 = 1 gives is s; with v01 = v11 = 1, t.
 std::vector<float> mapped(const char* which, const char* mapping, ShadingPoints& points, const Mat4d& to_world = {},
                           const RenderSpace& space = {}, ParameterList more = {}) {

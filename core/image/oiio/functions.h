@@ -5,7 +5,7 @@
 
 namespace whit {
 
-std::unique_ptr<PictureRows> oiio_open(const std::string& path);
+std::unique_ptr<PictureRows> oiio_open(const PictureFile& file);
 std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 
 }  // namespace whit

@@ -14,7 +14,7 @@ namespace whit {
 /// The module's functions.
 struct Oiio {
   /// Opens a picture. Throws std::runtime_error with the reason, which does not name the file.
-  std::unique_ptr<PictureRows> (*open)(const std::string& path);
+  std::unique_ptr<PictureRows> (*open)(const PictureFile& file);
 
   /// The bytes of a file of that kind: "tga", "jpg", "jpeg", "tif" or "tiff". Throws std::runtime_error with
   /// the reason.

@@ -1,7 +1,12 @@
 // Reading through OpenImageIO.
 #include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <type_traits>
@@ -51,11 +56,39 @@ std::string header_problem(const OIIO::ImageSpec& spec) {
   return spec.deep ? "deep pictures are not supported" : "";
 }
 
+// Bytes in memory as a file: not all of OpenImageIO's readers take them otherwise.
+class NamelessFile {
+ public:
+  explicit NamelessFile(std::span<const uint8_t> bytes) : file_(::memfd_create("whit picture", MFD_CLOEXEC)) {
+    if (file_ < 0) fail();
+    while (!bytes.empty()) {
+      const ssize_t n = ::write(file_, bytes.data(), bytes.size());
+      if (n <= 0) fail();
+      bytes = bytes.subspan(static_cast<size_t>(n));
+    }
+  }
+  ~NamelessFile() { ::close(file_); }
+  NamelessFile(const NamelessFile&) = delete;
+  NamelessFile& operator=(const NamelessFile&) = delete;
+
+  std::string path() const { return fmt::format("/proc/self/fd/{}", file_); }
+
+ private:
+  [[noreturn]] void fail() const {
+    const int reason = errno;
+    if (file_ >= 0) ::close(file_);
+    throw std::runtime_error(std::strerror(reason));
+  }
+  int file_;
+};
+
 // Rows are asked for in strips: as many as a tile is high, or some MiB, so that OpenEXR, which packs up to 256 rows together,
 // has something to do for all of its threads.
 class OiioRows : public PictureRows {
  public:
-  explicit OiioRows(const std::string& path) {
+  explicit OiioRows(const PictureFile& file) {
+    if (file.bytes) nameless_ = std::make_unique<NamelessFile>(file.bytes->bytes);
+    const std::string path = nameless_ ? nameless_->path() : file.path;
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);  // pbrt ignores alpha: colour must not be multiplied by it
     input_ = OIIO::ImageInput::open(path, &config);
@@ -63,7 +96,7 @@ class OiioRows : public PictureRows {
     const OIIO::ImageSpec& spec = input_->spec();
     if (std::string problem = header_problem(spec); !problem.empty()) throw std::runtime_error(problem);
     copy_header(spec, info);
-    if (std::string problem = size_problem(path, info); !problem.empty()) throw std::runtime_error(problem);
+    if (std::string problem = size_problem(file, info); !problem.empty()) throw std::runtime_error(problem);
     row_ = static_cast<size_t>(info.width) * info.channels;
     const size_t rows = kStripBytes / (row_ * sizeof(float)) / 256 * 256;
     strip_height_ = spec.tile_width > 0 ? spec.tile_height : static_cast<int>(std::max(size_t{256}, rows));
@@ -115,6 +148,7 @@ class OiioRows : public PictureRows {
     for (float& v : numbers) v = std::nearbyint(v * 65535) / 65535;
   }
 
+  std::unique_ptr<NamelessFile> nameless_;  // as long as it is read
   std::unique_ptr<OIIO::ImageInput> input_;
   size_t row_ = 0;
   int strip_height_ = 1, y_ = 0;
@@ -124,6 +158,6 @@ class OiioRows : public PictureRows {
 
 }  // namespace
 
-std::unique_ptr<PictureRows> oiio_open(const std::string& path) { return std::make_unique<OiioRows>(path); }
+std::unique_ptr<PictureRows> oiio_open(const PictureFile& file) { return std::make_unique<OiioRows>(file); }
 
 }  // namespace whit
