@@ -277,6 +277,44 @@ TEST(TextureStore, a_picture_in_memory_gives_the_bits_of_the_same_in_a_file) {
   }
 }
 
+TEST(TextureStore, the_colours_of_webp_are_not_multiplied_by_its_alpha) {
+  // Lossless, 2 x 2, as libwebp wrote it: (200 100 50 128) (10 20 30 255) / (0 0 0 255) (255 255 255 64).
+  const unsigned char webp[] = {
+      0x52, 0x49, 0x46, 0x46, 0x40, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50, 0x38, 0x4c, 0x33, 0x00,
+      0x00, 0x00, 0x2f, 0x01, 0x40, 0x00, 0x10, 0x1f, 0x20, 0x10, 0x20, 0x4c, 0xf8, 0xf2, 0x3f, 0x63, 0x43, 0x48,
+      0x40, 0xe8, 0xfe, 0xdf, 0x71, 0x8d, 0x90, 0x80, 0x30, 0x42, 0xf7, 0x7f, 0x25, 0x81, 0x00, 0xd1, 0x26, 0x4d,
+      0x99, 0x34, 0x01, 0xfc, 0xa3, 0x55, 0x0a, 0xb2, 0x01, 0xca, 0x54, 0x61, 0x13, 0xd1, 0xff, 0xf8, 0x00, 0x00};
+  const std::string path = fmt::format("{}/whit_store_alpha.webp", test::temp_folder());
+  std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(webp), sizeof webp);
+  for (const bool memory : {false, true}) {
+    TextureStore store;
+    TextureSpec spec = spec_of(path);
+    spec.filter = TextureFilter::Point;
+    if (memory) spec.path.clear(), spec.bytes = in_memory(path);
+    const float s[] = {0.25f, 0.75f, 0.25f, 0.75f}, t[] = {0.75f, 0.75f, 0.25f, 0.25f};
+    std::vector<float> r(4), g(4), b(4), a(4);
+    store.add(spec)->lookup(4, s, t, nullptr, nullptr, nullptr, nullptr, r.data(), g.data(), b.data());
+    spec.kind = TextureKind::Float, spec.channel = TextureChannel::Alpha;
+    store.add(spec)->lookup_float(4, s, t, nullptr, nullptr, nullptr, nullptr, a.data());
+    const auto of = [](std::vector<float> bytes) {
+      for (float& v : bytes) v /= 255;
+      return bytes;
+    };
+    EXPECT_EQ(r, of({200, 10, 0, 255}));
+    EXPECT_EQ(g, of({100, 20, 0, 255}));
+    EXPECT_EQ(b, of({50, 30, 0, 255}));
+    EXPECT_EQ(a, of({128, 255, 255, 64}));
+    EXPECT_TRUE(store.errors().all().empty());
+    // Cut off, it is an error.
+    const auto cut = in_memory(path);
+    cut->bytes = cut->bytes.first(60);
+    spec.path.clear(), spec.bytes = cut;
+    store.add(spec)->lookup_float(1, s, t, nullptr, nullptr, nullptr, nullptr, a.data());
+    ASSERT_EQ(store.errors().all().size(), 1u);
+    EXPECT_NE(store.errors().all()[0].message.find("ends early"), std::string::npos) << store.errors().all()[0].message;
+  }
+}
+
 TEST(TextureStore, errors_name_pictures_in_memory_as_they_are_called) {
   const std::string path = coloured_file("png");
   for (const size_t size : {size_t{0}, size_t{20}, size_t{60}}) {

@@ -6,6 +6,10 @@
 namespace whit {
 
 std::unique_ptr<PictureRows> oiio_open(const PictureFile& file);
+/// WebP, which OpenImageIO reads otherwise than needed, see webp.cpp.
+bool is_webp(const PictureFile& picture);
+std::unique_ptr<PictureRows> open_webp(const PictureFile& file);
+
 std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 
 }  // namespace whit

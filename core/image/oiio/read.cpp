@@ -158,6 +158,9 @@ class OiioRows : public PictureRows {
 
 }  // namespace
 
-std::unique_ptr<PictureRows> oiio_open(const PictureFile& file) { return std::make_unique<OiioRows>(file); }
+std::unique_ptr<PictureRows> oiio_open(const PictureFile& file) {
+  if (is_webp(file)) return open_webp(file);
+  return std::make_unique<OiioRows>(file);
+}
 
 }  // namespace whit
