@@ -69,6 +69,21 @@ inline float schlick_weight(float x) {
   return m2 * m2 * m;
 }
 
+/// The cosine on the outer side of a boundary, where the index is smaller, of light that meets it at the cosine c from
+/// the side that cos_near (signed) says; below 0 in total internal reflection. With an index of 1 it is c.
+inline float outer_cosine(float c, float cos_near, float eta) {
+  const float n = relative_index(cos_near, eta);
+  const float c1 = min_of(c, 1.0f), s2 = (1 - c1) * (1 + c1);
+  const float bent = 1 - s2 / (n * n), outer = bent > 0 ? safe_sqrt(bent) : -1.0f;
+  return n < 1 ? outer : c1;
+}
+
+/// Schlick's reflectance at an outer_cosine(), from f0 at normal incidence to f90 at grazing incidence.
+inline float schlick_reflectance(float outer_cosine, float f0, float f90) {
+  const float f = lerp(schlick_weight(max_of(outer_cosine, 0.0f)), f0, f90);
+  return outer_cosine < 0 ? 1.0f : f;
+}
+
 /// pbrt-v3's map from a user's roughness in [0, 1] to the Trowbridge-Reitz alpha (a fit by its authors).
 inline float roughness_to_alpha(float roughness) {
   const float x = log_of(max_of(roughness, 1e-3f));

@@ -23,7 +23,7 @@ enum class LobeType : uint8_t {
 
 /// How a lobe's reflectance depends on the angle.
 enum class FresnelType : uint8_t {
-  One,         ///< Reflects everything at every angle (mirror).
+  One,         ///< The weight says it all: a mirror, or a boundary that lets everything through.
   Dielectric,  ///< Exact unpolarised Fresnel; `eta` is the index inside over the index outside.
   Conductor,   ///< Exact unpolarised Fresnel of a metal; colour1 + i colour2 is the relative index. Microfacets only.
 };

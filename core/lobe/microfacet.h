@@ -62,9 +62,9 @@ inline float microfacet_reflection(const Distribution& d, const Pair& p, Fresnel
 
 /// Refraction by microfacets times |cos_i|, for weight 1, radiance. Walter et al. 2007, equation 21; their
 /// eta^2 and radiance's 1 / eta^2 cancel, and the denominator is the squared length of the unnormalised half
-/// vector.
-template <class Distribution>
-inline float microfacet_transmission(const Distribution& d, const Pair& p, float eta) {
+/// vector. through(oh, ih) is what a facet lets through at its cosines to wo and wi.
+template <class Distribution, class Through>
+inline float microfacet_transmission(const Distribution& d, const Pair& p, float eta, const Through& through) {
   const float n = relative_index(p.zo, eta);
   const Vec3f sum = p.wo + p.wi * n;
   const float length2 = dot(sum, sum);
@@ -75,11 +75,16 @@ inline float microfacet_transmission(const Distribution& d, const Pair& p, float
   const float e = d.e(h, z, p.n);
   const float density = trowbridge_reitz(e > 0 ? e : 1.0f, d.alpha_xy());
   const float below = smith_sum(d, p) * length2;  // 0 also where the product is too small for a float
-  const float value =
-      (1 - fresnel_dielectric(oh, eta)) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) / (below > 0 ? below : 1.0f);
+  const float value = through(oh, ih) * density * std::abs(oh * ih) * 2 * std::abs(p.zi) / (below > 0 ? below : 1.0f);
   // Both cosines of a facet that refracts have different signs, and so have those of the surface. Facets seen
   // from behind are not excluded, as they are not in pbrt-v3: only very rough glass has any.
   return e > 0 && p.zo * p.zi < 0 && oh * ih <= 0 ? value * p.transmits : 0.0f;
+}
+
+/// The same by Fresnel's equations.
+template <class Distribution>
+inline float microfacet_transmission(const Distribution& d, const Pair& p, float eta) {
+  return microfacet_transmission(d, p, eta, [eta](float oh, float) { return 1 - fresnel_dielectric(oh, eta); });
 }
 
 /// Smith's masking of wo by the facets, G1, over |cos|; see smith_term().

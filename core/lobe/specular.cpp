@@ -76,7 +76,7 @@ inline Delta reflect(const Vec3f& wo, const Vec3f& n, FresnelType fresnel, float
 
 /// Snell's law in vector form. The coefficient of the normal, (cos_o - n cos_t) / n, is written without the
 /// difference, so that a ray passes an index of 1 undeflected.
-inline Delta refract(const Vec3f& wo, const Vec3f& normal, float eta) {
+inline Delta refract(const Vec3f& wo, const Vec3f& normal, FresnelType fresnel, float eta) {
   const float z = dot(wo, normal);
   const float n = relative_index(z, eta);
   const Refraction r = snell(z, n);
@@ -85,7 +85,7 @@ inline Delta refract(const Vec3f& wo, const Vec3f& normal, float eta) {
   const Vec3f bent = normalize(normal * along - wo);
   const bool straight = eta == 1 || r.g2 <= 0;
   const Vec3f wi{straight ? -wo.x : bent.x, straight ? -wo.y : bent.y, straight ? -wo.z : bent.z};
-  const float f = (1 - fresnel_dielectric(z, eta)) / (n * n);
+  const float f = (fresnel == FresnelType::One ? 1.0f : 1 - fresnel_dielectric(z, eta)) / (n * n);
   // An index of 1 is no boundary, also where the square of the cosine is too small for a float.
   return {wi, eta == 1 || (z != 0 && r.g2 > 0) ? f : 0.0f};
 }
@@ -156,7 +156,11 @@ void draw_reflection(const LobeDraw& d) {
 void draw_transmission(const LobeDraw& d) {
   const ShadingBatch& s = d.s;
   const float* const eta = d.lobe.eta;
-  draw_delta(d, [&](int i) { return refract(s.wo[i], s.ns[i], eta[i]); });
+  if (d.lobe.fresnel == FresnelType::One) {
+    draw_delta(d, [&](int i) { return refract(s.wo[i], s.ns[i], FresnelType::One, eta[i]); });
+  } else {
+    draw_delta(d, [&](int i) { return refract(s.wo[i], s.ns[i], FresnelType::Dielectric, eta[i]); });
+  }
   if (!d.eta2) return;
   for_lanes(s.n, [&](int i) {
     const float n = relative_index(dot(s.wo[i], s.ns[i]), eta[i]), before = d.eta2[i];
@@ -170,6 +174,7 @@ void scale_reflection(const Lobe& lobe, const ShadingBatch& s, float* to) {
 }
 
 void scale_transmission(const Lobe& lobe, const ShadingBatch& s, float* to) {
+  if (lobe.fresnel == FresnelType::One) return;
   for_lanes(s.n, [&](int i) { to[i] *= 1 - fresnel_dielectric(dot(s.wo[i], s.ns[i]), lobe.eta[i]); });
 }
 
@@ -192,8 +197,14 @@ int specular_reflection(const LobeSet& set, const ShadingBatch& s, const float* 
 int specular_transmission(const LobeSet& set, const ShadingBatch& s, const float* choice_u, const Vec3Lanes& wi,
                           const RGBLanes& weight) {
   return take_lobes(set, LobeType::SpecularTransmission, s, choice_u, wi, weight, [&](int k, const Chosen& chosen) {
-    const float* const eta = set.lobes[k].eta;
-    take_lobe(set, k, chosen, s, wi, weight, [&](int i) { return refract(s.wo[i], s.ns[i], eta[i]); });
+    const Lobe& lobe = set.lobes[k];
+    if (lobe.fresnel == FresnelType::One) {
+      take_lobe(set, k, chosen, s, wi, weight,
+                [&](int i) { return refract(s.wo[i], s.ns[i], FresnelType::One, lobe.eta[i]); });
+    } else {
+      take_lobe(set, k, chosen, s, wi, weight,
+                [&](int i) { return refract(s.wo[i], s.ns[i], FresnelType::Dielectric, lobe.eta[i]); });
+    }
   });
 }
 
