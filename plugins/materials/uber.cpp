@@ -51,22 +51,6 @@ struct Uber : Material {
     lobe.weight = product(s, weights(colour, s), solid);
     out.add(lobe);
   }
-
-  /// What is not opaque lets rays on undeflected. Where there is any of it, pbrt-v3 takes the surface's index for
-  /// ray differentials as 1.
-  static void add_passage(const ShadingBatch& s, const RGBLanes& solid, const float* eta, LobeSet& out) {
-    Lobe passage;
-    passage.type = LobeType::SpecularTransmission;
-    passage.fresnel = FresnelType::Dielectric;
-    passage.eta = filled(s, 1);
-    passage.weight = one_minus(s, solid);
-    out.add(passage);
-    if (!eta) return;  // 1 anyway
-    float* const seen = s.arena->floats(s.n);
-    const RGBLanes w = passage.weight;
-    for_lanes(s.n, [&](int i) { seen[i] = w.r[i] + w.g[i] + w.b[i] > 0 ? 1.0f : eta[i]; });
-    out.eta = seen;
-  }
 };
 
 const Register<Uber> uber{

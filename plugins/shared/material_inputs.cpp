@@ -39,6 +39,20 @@ RGBLanes one_minus(const ShadingBatch& s, const RGBLanes& share) {
   return clamp0(s.n, out);
 }
 
+void add_passage(const ShadingBatch& s, const RGBLanes& solid, const float* eta, LobeSet& out) {
+  Lobe passage;
+  passage.type = LobeType::SpecularTransmission;
+  passage.fresnel = FresnelType::Dielectric;
+  passage.eta = filled(s, 1);
+  passage.weight = one_minus(s, solid);
+  out.add(passage);
+  if (!eta) return;  // 1 anyway
+  float* const seen = s.arena->floats(s.n);
+  const RGBLanes w = passage.weight;
+  for_lanes(s.n, [&](int i) { seen[i] = w.r[i] + w.g[i] + w.b[i] > 0 ? 1.0f : eta[i]; });
+  out.eta = seen;
+}
+
 float* indices(const Tex<float>& index, const ShadingBatch& s) {
   float* const out = index(s);
   for_lanes(s.n, [&](int i) { out[i] = clamp_to(out[i], 1e-3f, 1e3f); });

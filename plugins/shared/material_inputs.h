@@ -27,6 +27,10 @@ RGBLanes product(const ShadingBatch& s, const RGBLanes& a, const RGBLanes& b);
 /// 1 - share, at least 0, in new arrays.
 RGBLanes one_minus(const ShadingBatch& s, const RGBLanes& share);
 
+/// What is not solid lets rays on undeflected. Where there is any of it, pbrt-v3 takes the surface's index for ray
+/// differentials, `eta` (null: 1), as 1.
+void add_passage(const ShadingBatch& s, const RGBLanes& solid, const float* eta, LobeSet& out);
+
 inline bool is_black(const Tex<RGB>& colour) {
   const RGB v = colour.value();
   return colour.is_constant() && v.x <= 0 && v.y <= 0 && v.z <= 0;
