@@ -58,7 +58,9 @@ void gather(const uint8_t* from, size_t stride, size_t count, bool normalized, O
 /// Elements as they lie in a view. `out` has room for all of their numbers.
 template <class Out>
 void decode(const Accessor& a, const uint8_t* from, size_t stride, size_t count, Out* out) {
-  if (std::is_same_v<Out, float> && a.component == Component::Float && a.columns == 1 && stride == a.element_size()) {
+  const bool as_they_are = (std::is_same_v<Out, float> && a.component == Component::Float) ||
+                           (std::is_same_v<Out, uint32_t> && a.component == Component::Uint32);
+  if (as_they_are && a.columns == 1 && stride == a.element_size()) {
     std::memcpy(out, from, count * stride);
     return;
   }
@@ -106,9 +108,8 @@ std::string decode_sparse(const Buffers& buffers, const Accessor& a, Out* out) {
 }
 
 template <class Out>
-std::string read(const Model& model, int accessor, std::vector<Out>& out) {
-  const Buffers& buffers = *model.buffers;
-  const Accessor& a = at(model, accessor);
+std::string read(const Buffers& buffers, int accessor, std::vector<Out>& out) {
+  const Accessor& a = buffers.accessors[static_cast<size_t>(accessor)];
   std::span<const uint8_t> bytes;
   if (a.view >= 0) {
     if (std::string error = buffers.view(a.view, bytes); !error.empty()) return error;
@@ -158,7 +159,7 @@ std::string sparse_problem(const Accessor& a, const Sparse& s, std::span<const u
 }
 
 std::string read_any_numbers(const Model& model, int accessor, std::vector<double>& out) {
-  return read(model, accessor, out);
+  return read(*model.buffers, accessor, out);
 }
 
 std::string not_finite(int accessor, const std::vector<float>& numbers, int width) {
@@ -167,13 +168,17 @@ std::string not_finite(int accessor, const std::vector<float>& numbers, int widt
   return fmt::format("/accessors/{}: element {} is not finite", accessor, bad / width);
 }
 
+std::string read_floats(const Buffers& buffers, int accessor, std::vector<float>& out) {
+  const std::string error = read(buffers, accessor, out);
+  return error.empty() ? not_finite(accessor, out, buffers.accessors[static_cast<size_t>(accessor)].numbers()) : error;
+}
+
 std::string read_floats(const Model& model, int accessor, std::vector<float>& out) {
-  const std::string error = read(model, accessor, out);
-  return error.empty() ? not_finite(accessor, out, components_of(model, accessor)) : error;
+  return read_floats(*model.buffers, accessor, out);
 }
 
 std::string read_integers(const Model& model, int accessor, std::vector<uint32_t>& out) {
-  return read(model, accessor, out);
+  return read(*model.buffers, accessor, out);
 }
 
 }  // namespace whit::gltf

@@ -9,6 +9,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@ namespace whit::gltf {
 
 using Json = nlohmann::json;
 
-/// What is wrong with one file: at most kMost errors, and then how many more there are.
+/// What is wrong with one file: at most kMost errors, each once, and then how many more there are.
 class Problems {
  public:
   static constexpr size_t kMost = 50;
@@ -34,6 +35,8 @@ class Problems {
   void error(const std::string& place, const std::string& message, std::string remedy = {});
   void file_error(const std::string& place, const std::string& message, std::string remedy = {});
   void warning(const std::string& place, const std::string& message, std::string remedy = {});
+  /// Against the specification, and clear all the same: a warning, and an error where files are checked.
+  void excused(const std::string& place, const std::string& message, std::string remedy);
 
   bool any() const { return errors_ > 0; }
   const std::string& shown() const { return shown_; }
@@ -46,6 +49,7 @@ class Problems {
   SourcePos where_;
   Diagnostics& diagnostics_;
   size_t errors_ = 0;
+  std::set<std::string> said_;
 };
 
 /// Things that an index may name: their JSON name and how many there are.
@@ -126,6 +130,6 @@ class Item {
 };
 
 /// Text of the file in a message: in quotes, short, and without characters that cannot be shown.
-std::string shown_text(std::string_view text);
+std::string shown_text(std::string_view text, size_t most = 60);
 
 }  // namespace whit::gltf

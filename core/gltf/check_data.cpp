@@ -71,7 +71,7 @@ class DataReader {
     auto file = std::make_shared<const MappedFile>(resource->file);
     if (!file->error().empty()) {
       item.problems().file_error(item.place("uri"),
-                                 fmt::format("cannot open {}: {}", shown_text(resource->file), file->error()),
+                                 fmt::format("cannot open {}: {}", shown_text(resource->file, 300), file->error()),
                                  "put the file where the model has it, or export it as a .glb, which is one file");
       return;
     }

@@ -38,6 +38,10 @@ std::optional<std::pair<int, int>> version_of(const std::string& text) {
 }
 
 bool check_asset(const Item& asset) {
+  // Old files write 1 for "1.0".
+  if (asset.has("version") && asset.value()["version"].is_number()) {
+    asset.value()["version"] = fmt::format("{:.1f}", asset.value()["version"].get<double>());
+  }
   const auto text = asset.text("version", Item::Need::Required);
   if (!text) return false;
   const auto version = version_of(*text);

@@ -29,12 +29,11 @@ std::string shown_value(const Json& value) {
 
 }  // namespace
 
-std::string shown_text(std::string_view text) {
-  constexpr size_t kMost = 60;
-  std::string out = without_controls(text.substr(0, kMost));
+std::string shown_text(std::string_view text, size_t most) {
+  std::string out = without_controls(text.substr(0, most));
   // Not in the middle of a character.
-  while (text.size() > kMost && !out.empty() && (out.back() & 0x80) != 0) out.pop_back();
-  return '"' + out + (text.size() > kMost ? "...\"" : "\"");
+  while (text.size() > most && !out.empty() && (out.back() & 0x80) != 0) out.pop_back();
+  return '"' + out + (text.size() > most ? "...\"" : "\"");
 }
 
 Problems::~Problems() {
@@ -48,9 +47,11 @@ std::string Problems::text(const std::string& place, const std::string& message)
 }
 
 void Problems::add(ErrorClass kind, const std::string& place, const std::string& message, std::string remedy) {
+  const std::string whole = text(place, message);
+  if (errors_ < kMost && !said_.insert(whole).second) return;
   if (++errors_ > kMost) return;
   if (remedy.empty()) remedy = kExportAgain;
-  diagnostics_.add({Severity::Error, kind, where_, text(place, message), std::move(remedy)});
+  diagnostics_.add({Severity::Error, kind, where_, whole, std::move(remedy)});
 }
 
 void Problems::error(const std::string& place, const std::string& message, std::string remedy) {
@@ -63,6 +64,10 @@ void Problems::file_error(const std::string& place, const std::string& message, 
 
 void Problems::warning(const std::string& place, const std::string& message, std::string remedy) {
   diagnostics_.warning(where_, text(place, message), std::move(remedy));
+}
+
+void Problems::excused(const std::string& place, const std::string& message, std::string remedy) {
+  diagnostics_.excused(where_, text(place, message), std::move(remedy));
 }
 
 std::string Item::place() const {

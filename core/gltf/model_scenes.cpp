@@ -43,6 +43,8 @@ Node node_of(const tinygltf::Node& from) {
     // Column by column for column vectors is row by row for row vectors.
     Mat4d m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = from.matrix[static_cast<size_t>(i)];
+    // Which it is but for rounding.
+    for (int i = 0; i < 4; ++i) m[i][3] = i == 3 ? 1 : 0;
     to.matrix = m;
   }
   to.translation = vector_of(from.translation, to.translation);
