@@ -94,19 +94,24 @@ class DataReader {
 
   void read_view(const Item& item, BufferView& v) {
     const bool right = read_range(item, v.buffer, v.offset, v.length);
-    if (!right || fallback_[static_cast<size_t>(v.buffer)] || !out_.buffers[static_cast<size_t>(v.buffer)].owner)
-      v.buffer = -1;
-    if (!right) v.length = 0;
+    const bool fallback = right && fallback_[static_cast<size_t>(v.buffer)];
+    const bool has_bytes = right && out_.buffers[static_cast<size_t>(v.buffer)].owner;
     if (item.has("byteStride")) {
       const auto stride = item.integer("byteStride", 4, 252);
-      if (stride && *stride % 4 != 0)
+      if (stride && *stride % 4 != 0) {
         item.error_at("byteStride", fmt::format("must be a multiple of 4, and is {}", *stride));
+      }
       v.stride = stride.value_or(0);
     }
     item.choice("target", std::vector<uint64_t>{34962, 34963});
+    bool compressed = false;
     item.object("extensions", [&](const Item& extensions) {
-      extensions.object(kMeshopt, [&](const Item& meshopt) { read_compression(meshopt, v); });
+      extensions.object(kMeshopt, [&](const Item& meshopt) { compressed = true, read_compression(meshopt, v); });
     });
+    if (fallback && !has_bytes && !compressed) item.error_at("buffer", "names a buffer without bytes");
+    if (!has_bytes) v.buffer = -1;
+    // Nothing is read of what has none: why has been said.
+    if (!right || (!has_bytes && !v.compression)) v.length = 0;
   }
 
   void read_compression(const Item& item, BufferView& v) {
@@ -125,7 +130,7 @@ class DataReader {
     c.mode = static_cast<Compression::Mode>(mode), c.filter = static_cast<Compression::Filter>(filter);
     if (!check_compression(item, c, v)) return;
     if (!out_.buffers[static_cast<size_t>(c.buffer)].owner) {
-      if (fallback_[static_cast<size_t>(c.buffer)]) item.error_at("buffer", "has no bytes");
+      if (fallback_[static_cast<size_t>(c.buffer)]) item.error_at("buffer", "names a buffer without bytes");
       return;
     }
     v.compression = c;
@@ -186,6 +191,7 @@ class DataReader {
     a.offset = *offset;
     if (a.view >= 0 && !check_range(item, a, *count)) a.view = -1;
     else a.count = *count;
+    if (a.count == 0) return;
     item.object("sparse", [&](const Item& sparse) { read_sparse(sparse, a); });
   }
 
