@@ -83,7 +83,10 @@ void check_extensions(const Item& root) {
     root.elements(key, [&](const Item& element, size_t) {
       if (!element.value().is_string()) return element.error("must be a string");
       const std::string& name = element.value().get_ref<const std::string&>();
-      if (!names.insert(name).second) element.error(fmt::format("{} is there twice", shown_text(name)));
+      if (!names.insert(name).second) {
+        root.problems().excused(element.place(), fmt::format("{} is there twice", shown_text(name)), "once would do");
+        return;
+      }
       if (&names == &required && !is_read(name)) {
         element.error(fmt::format("the file requires the extension {}, which is not read", shown_text(name)),
                       "re-export without " + shown_text(name));
@@ -98,9 +101,10 @@ void check_extensions(const Item& root) {
                             why_unread(name));
   }
   for (const std::string& name : required) {
-    if (!used.contains(name))
-      root.error_at("extensionsRequired",
-                    fmt::format("names {}, which is not under \"extensionsUsed\"", shown_text(name)));
+    if (used.contains(name) || !is_read(name)) continue;
+    root.problems().excused("/extensionsRequired",
+                            fmt::format("names {}, which is not under \"extensionsUsed\"", shown_text(name)),
+                            "it is read all the same");
   }
 }
 

@@ -121,6 +121,7 @@ void check_materials(const CheckContext& c) {
 }
 
 void check_textures(const CheckContext& c) {
+  bool told = false;
   c.root.objects("textures", [&](const Item& texture, size_t) {
     texture.index("sampler", c.counts.samplers);
     texture.index("source", c.counts.images);
@@ -128,6 +129,11 @@ void check_textures(const CheckContext& c) {
       for (const char* name : {"EXT_texture_webp", "KHR_texture_basisu"}) {
         extensions.object(name, [&](const Item& e) { e.index("source", c.counts.images); });
       }
+      if (told || !extensions.has("KHR_texture_basisu") || texture.has("source")) return;
+      told = true;
+      extensions.problems().warning(texture.place(),
+                                    "has only a picture of KHR_texture_basisu, which cannot be decoded",
+                                    "re-export without KHR_texture_basisu");
     });
   });
   c.root.objects("samplers", [](const Item& sampler, size_t) {

@@ -58,12 +58,25 @@ class MeshCheck {
     const Wanted* wanted = wanted_of(name, morph_target);
     const int accessor = wanted ? check_accessor(c_, member, *wanted) : member.as_index(c_.counts.accessors);
     if (accessor < 0) return;
-    const uint64_t count = c_.buffers.accessors[static_cast<size_t>(accessor)].count;
+    const Accessor& a = c_.buffers.accessors[static_cast<size_t>(accessor)];
+    const uint64_t count = a.count;
     if (count == 0) return;
+    check_alignment(member, a);
     if (vertices_ == 0) vertices_ = count;
     if (count != vertices_)
       member.error(fmt::format("names accessor {} of {} elements, and the primitive's others have {}", accessor, count,
                                vertices_));
+  }
+
+  /// Graphics cards want it so.
+  void check_alignment(const Item& member, const Accessor& a) {
+    if (a.view < 0 || c_.unaligned) return;
+    const uint64_t stride = c_.buffers.views[static_cast<size_t>(a.view)].stride;
+    if (a.offset % 4 == 0 && (stride != 0 ? stride : a.element_size()) % 4 == 0) return;
+    c_.unaligned = true;
+    member.problems().excused(member.place(),
+                              "names an accessor whose elements do not begin at multiples of four bytes",
+                              "it is read all the same");
   }
 
   void check_draco(const Item& draco, const Item& primitive) {

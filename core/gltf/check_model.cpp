@@ -50,7 +50,7 @@ bool uses(const Item& root, const std::string& extension) {
 void check_model(const Item& root, const Buffers& buffers) {
   check_extensions(root);
   check_everywhere(root);
-  CheckContext c{root, buffers, counts_of(root), uses(root, "KHR_mesh_quantization"), {}, {}};
+  CheckContext c{root, buffers, counts_of(root), false, uses(root, "KHR_mesh_quantization"), {}, {}};
   check_meshes(c);
   check_nodes(c);
   check_animations(c);

@@ -20,6 +20,7 @@ struct CheckContext {
   const Item& root;
   const Buffers& buffers;
   Counts counts;
+  bool unaligned = false;            ///< Attributes that do not begin at multiples of four have been reported.
   bool quantized = false;            ///< KHR_mesh_quantization is used.
   std::vector<size_t> mesh_targets;  ///< How many morph targets the primitives of each mesh have.
   std::vector<int> node_mesh;        ///< The mesh of each node, or -1.

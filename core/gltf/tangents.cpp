@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <unordered_map>
 
 #include "core/gltf/primitive_parts.h"
@@ -113,32 +114,39 @@ class TangentMaker {
     }
   }
 
+  /// An edge, at the lower of its ends.
+  struct Edge {
+    uint32_t other, corner;  ///< The other end, and the corner that it follows.
+    bool operator<(const Edge& e) const { return other != e.other ? other < e.other : corner < e.corner; }
+  };
+
   /// Matches the edge after each corner with the edge of another triangle that runs the other way.
   void find_neighbours() {
-    struct Edge {
-      uint64_t ends;
-      uint32_t corner;
-      bool operator<(const Edge& e) const { return ends != e.ends ? ends < e.ends : corner < e.corner; }
-    };
     const auto corners = static_cast<uint32_t>(mesh_.indices.size());
+    const auto lower = [&](uint32_t c) { return std::min(welded(c), welded(next(c))); };
+    // Sorted by counting by the lower end, then few by few.
+    std::vector<uint32_t> start(welded_.size() + 2);
+    for (uint32_t c = 0; c < corners; ++c) ++start[lower(c) + 2];
+    for (size_t v = 2; v < start.size(); ++v) start[v] += start[v - 1];
     std::vector<Edge> edges(corners);
-    for (uint32_t c = 0; c < corners; ++c) {
-      const uint64_t a = welded(c), b = welded(next(c));
-      edges[c] = {std::min(a, b) << 32 | std::max(a, b), c};
-    }
-    std::sort(edges.begin(), edges.end());
+    for (uint32_t c = 0; c < corners; ++c) edges[start[lower(c) + 1]++] = {std::max(welded(c), welded(next(c))), c};
     neighbour_.assign(corners, kNone);
-    std::vector<uint32_t> waiting[2];
+    for (size_t v = 0; v + 1 < start.size(); ++v) {
+      std::sort(edges.begin() + start[v], edges.begin() + start[v + 1]);
+      match_edges({edges.data() + start[v], start[v + 1] - start[v]}, static_cast<uint32_t>(v));
+    }
+  }
+
+  /// The first that run one way with the first that run the other, of those between the same ends.
+  void match_edges(std::span<const Edge> edges, uint32_t lower_end) {
     for (size_t begin = 0, end; begin < edges.size(); begin = end) {
-      for (end = begin; end < edges.size() && edges[end].ends == edges[begin].ends; ++end) {
-        const uint32_t c = edges[end].corner;
-        waiting[welded(c) < welded(next(c)) ? 0 : 1].push_back(c);
+      for (auto& waiting : waiting_) waiting.clear();
+      for (end = begin; end < edges.size() && edges[end].other == edges[begin].other; ++end) {
+        waiting_[welded(edges[end].corner) == lower_end ? 0 : 1].push_back(edges[end].corner);
       }
-      // The first that run one way with the first that run the other.
-      for (size_t k = 0; k < std::min(waiting[0].size(), waiting[1].size()); ++k) {
-        neighbour_[waiting[0][k]] = waiting[1][k], neighbour_[waiting[1][k]] = waiting[0][k];
+      for (size_t k = 0; k < std::min(waiting_[0].size(), waiting_[1].size()); ++k) {
+        neighbour_[waiting_[0][k]] = waiting_[1][k], neighbour_[waiting_[1][k]] = waiting_[0][k];
       }
-      waiting[0].clear(), waiting[1].clear();
     }
   }
 
@@ -219,7 +227,7 @@ class TangentMaker {
   const std::vector<float>& uvs_;
   std::vector<uint32_t> welded_;     ///< Of vertices.
   std::vector<uint32_t> neighbour_;  ///< Of corners: the corner that begins the other triangle's edge.
-  std::vector<uint32_t> group_of_, open_;
+  std::vector<uint32_t> group_of_, open_, waiting_[2];
   std::vector<Triangle> triangles_;
   std::vector<Group> groups_;
 };

@@ -85,13 +85,13 @@ TEST(GltfPrimitive, VPointsUpAndColorsHaveFourNumbers) {
   b.mesh({{"attributes",
            {{"POSITION", b.accessor("VEC3", zigzag(3))},
             {"TEXCOORD_0", b.accessor("VEC2", std::vector<float>{0, 0, 1, 0.25f, 0.5f, 1})},
-            {"TEXCOORD_1", b.accessor("VEC2", std::vector<uint8_t>{0, 255, 255, 0, 51, 102}, true)},
+            {"TEXCOORD_1", b.accessor("VEC2", std::vector<uint16_t>{0, 65535, 65535, 0, 13107, 26214}, true)},
             {"COLOR_0", b.accessor("VEC3", std::vector<float>{1, 0, 0, 0, 2, 0, 0, 0, 0.5f})}}}});
   gltf::MeshNeeds needs;
   needs.uv0 = needs.uv1 = needs.colors = true;
   const MeshData mesh = read(b, needs);
   EXPECT_EQ(mesh.uvs, (std::vector<float>{0, 1, 1, 0.75f, 0.5f, 0}));
-  // 51 / 255 = 0.2 and 1 - 102 / 255 = 0.6.
+  // 13107 / 65535 = 0.2 and 1 - 26214 / 65535 = 0.6.
   const std::vector<float> wanted{0, 0, 1, 1, 0.2f, 0.6f};
   ASSERT_EQ(mesh.uvs1.size(), wanted.size());
   for (size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(mesh.uvs1[i], wanted[i], 1e-7f);
