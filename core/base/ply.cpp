@@ -262,11 +262,15 @@ class AsciiReader {
 
 /// Where the vertex properties go: column -> (property index or -1).
 struct VertexColumns {
-  int position[3], normal[3], uv[2];
+  int position[3], normal[3], uv[2], uv1[2], color[4], tangent[3], sign;
   bool has_normals() const { return normal[0] >= 0; }
   bool has_uvs() const { return uv[0] >= 0; }
 
-  explicit VertexColumns(const Element& e) : uv{-1, -1} {
+  VertexColumns(const Element& e, const MeshAttributes& wanted) : uv{-1, -1} {
+    set(e, uv1, {"u1", "v1"}, wanted.uvs1), set(e, color, {"red", "green", "blue"}, wanted.colors);
+    color[3] = color[0] >= 0 ? plain(e, "alpha") : -1;
+    set(e, tangent, {"tx", "ty", "tz"}, true);
+    sign = tangent[0] >= 0 ? plain(e, "tw") : -1;
     static constexpr const char *kP[] = {"x", "y", "z"}, *kN[] = {"nx", "ny", "nz"};
     static constexpr const char* kUv[][2] = {
         {"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}, {"texture_s", "texture_t"}};
@@ -280,6 +284,13 @@ struct VertexColumns {
   }
 
  private:
+  /// All of them, or none.
+  static void set(const Element& e, int* columns, std::initializer_list<const char*> names, bool wanted) {
+    bool all = wanted;
+    int* column = columns;
+    for (const char* name : names) all = (*column++ = plain(e, name)) >= 0 && all;
+    if (!all) std::fill(columns, column, -1);
+  }
   static int plain(const Element& e, const char* name) {
     const int i = e.find(name);
     return i >= 0 && !e.properties[static_cast<size_t>(i)].is_list ? i : -1;
@@ -306,7 +317,25 @@ std::vector<Target> vertex_targets(const Element& e, const VertexColumns& column
   for (size_t i = 0; i < 2 && columns.has_uvs(); ++i) {
     targets[static_cast<size_t>(columns.uv[i])] = {nullptr, out.uvs.data() + i, 2};
   }
+  const auto aim = [&](const int* column, size_t n, std::vector<float>& to) {
+    for (size_t i = 0; i < n && !to.empty(); ++i)
+      if (column[i] >= 0) targets[static_cast<size_t>(column[i])] = {nullptr, to.data() + i, n};
+  };
+  aim(columns.uv1, 2, out.uvs1), aim(columns.color, 4, out.colors);
+  aim(columns.tangent, 3, out.tangents), aim(&columns.sign, 1, out.bitangent_signs);
   return targets;
+}
+
+/// Makes parts of 1 of colours that are stored as integers.
+void scale_colors(const Element& e, const VertexColumns& columns, std::vector<float>& colors) {
+  for (size_t c = 0; c < 4 && !colors.empty(); ++c) {
+    if (columns.color[c] < 0) continue;
+    const Type type = e.properties[static_cast<size_t>(columns.color[c])].type;
+    if (!is_integer(type)) continue;
+    const float most =
+        with_type(type, [](auto zero) { return static_cast<float>(std::numeric_limits<decltype(zero)>::max()); });
+    for (size_t i = c; i < colors.size(); i += 4) colors[i] /= most;
+  }
 }
 
 /// Copies one property of `n` records that lie `record` bytes apart.
@@ -358,15 +387,18 @@ void skip_property(Reader& reader, const Property& p) {
 template <class Reader>
 class MeshReader {
  public:
-  MeshReader(const Header& header, std::string_view data, Reader reader, PlyMesh& out)
-      : header_(header), left_(data.size()), reader_(std::move(reader)), out_(out) {}
+  MeshReader(const Header& header, const MeshAttributes& wanted, std::string_view data, Reader reader, PlyMesh& out)
+      : header_(header), wanted_(wanted), left_(data.size()), reader_(std::move(reader)), out_(out) {}
 
   std::string read() {
     if (std::string error = check_sizes(); !error.empty()) return error;
     for (const Element& e : header_.elements) {
       std::string error;
-      if (e.name == "vertex") error = read_vertices(e);
-      else if (e.name == "face") error = read_faces(e);
+      if (e.name == "vertex") {
+        const VertexColumns columns(e, wanted_);
+        error = read_vertices(e, columns);
+        scale_colors(e, columns, out_.colors);
+      } else if (e.name == "face") error = read_faces(e);
       else skip_element(e);
       if (error.empty() && reader_.failed()) error = reader_.error();
       if (!error.empty()) return error;
@@ -400,11 +432,14 @@ class MeshReader {
       for (const Property& p : e.properties) skip_property(reader_, p);
   }
 
-  std::string read_vertices(const Element& e) {
-    const VertexColumns columns(e);
+  std::string read_vertices(const Element& e, const VertexColumns& columns) {
     out_.positions.resize(3 * e.count);
     if (columns.has_normals()) out_.normals.resize(3 * e.count);
     if (columns.has_uvs()) out_.uvs.resize(2 * e.count);
+    if (columns.uv1[0] >= 0) out_.uvs1.resize(2 * e.count);
+    if (columns.color[0] >= 0) out_.colors.assign(4 * e.count, 1.0f);
+    if (columns.tangent[0] >= 0) out_.tangents.resize(3 * e.count);
+    if (columns.sign >= 0) out_.bitangent_signs.resize(e.count);
     const std::vector<Target> targets = vertex_targets(e, columns, out_);
     if constexpr (kBinary) {
       if (!has_lists(e)) return read_packed_vertices(e, targets);
@@ -500,6 +535,7 @@ class MeshReader {
   static constexpr uint32_t kBad = 0xffffffffu;
 
   const Header& header_;
+  const MeshAttributes wanted_;
   size_t left_;
   Reader reader_;
   PlyMesh& out_;
@@ -527,7 +563,7 @@ std::string check_header(const Header& header) {
   const Element *vertex = only_element(header, "vertex"), *face = only_element(header, "face");
   if (!vertex) return "PLY file has several elements \"vertex\"";
   if (!face) return "PLY file has several elements \"face\"";
-  const VertexColumns columns(*vertex);
+  const VertexColumns columns(*vertex, {});
   if (columns.position[0] < 0 || columns.position[1] < 0 || columns.position[2] < 0) {
     return "PLY vertices lack x, y or z";
   }
@@ -565,7 +601,7 @@ std::string check_mesh(const PlyMesh& mesh) {
 
 }  // namespace
 
-std::string parse_ply(std::string_view bytes, PlyMesh& out) {
+std::string parse_ply(std::string_view bytes, PlyMesh& out, const MeshAttributes& wanted) {
   out = {};
   Header header;
   std::string error = parse_header(bytes, header);
@@ -573,12 +609,14 @@ std::string parse_ply(std::string_view bytes, PlyMesh& out) {
   if (error.empty()) error = check_header(header);
   if (!error.empty()) return error;
   if (header.format == Format::Ascii) {
-    error = MeshReader(header, bytes, AsciiReader(bytes), out).read();
+    error = MeshReader(header, wanted, bytes, AsciiReader(bytes), out).read();
   } else {
     const bool swap = (header.format == Format::BigEndian) == (std::endian::native == std::endian::little);
-    error = MeshReader(header, bytes, BinaryReader(bytes, swap), out).read();
+    error = MeshReader(header, wanted, bytes, BinaryReader(bytes, swap), out).read();
   }
-  out.bad_numbers = clear_bad_numbers(out.normals) + clear_bad_numbers(out.uvs);
+  for (std::vector<float>* values :
+       {&out.normals, &out.uvs, &out.uvs1, &out.colors, &out.tangents, &out.bitangent_signs})
+    out.bad_numbers += clear_bad_numbers(*values);
   return error.empty() ? check_mesh(out) : error;
 }
 

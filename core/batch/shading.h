@@ -34,11 +34,20 @@ struct ShadingBatch {
   float *dudx = nullptr, *dvdx = nullptr, *dudy = nullptr, *dvdy = nullptr;
   Vec3Lanes dpdx, dpdy;
   uint8_t* flips = nullptr;  ///< SceneShape::flips, 1 where normals flip.
+  /// The second set of (u, v), which is the first where a shape has no other, and its derivatives, as far as the first has
+  /// them; and the colours and alphas of vertices, 1 where a shape has none. Null where nobody asks (MeshAttributes).
+  float *u1 = nullptr, *v1 = nullptr;
+  float *du1du = nullptr, *dv1du = nullptr, *du1dv = nullptr, *dv1dv = nullptr;
+  float *du1dx = nullptr, *dv1dx = nullptr, *du1dy = nullptr, *dv1dy = nullptr;
+  RGBLanes color;
+  float* color_alpha = nullptr;
 
   static constexpr auto fields() {
     using S = ShadingBatch;
     return std::tuple(&S::p, &S::p_error, &S::wo, &S::ng, &S::ns, &S::dpdu, &S::dpdv, &S::dndu, &S::dndv, &S::u, &S::v,
-                      &S::dudx, &S::dvdx, &S::dudy, &S::dvdy, &S::dpdx, &S::dpdy, &S::flips);
+                      &S::dudx, &S::dvdx, &S::dudy, &S::dvdy, &S::dpdx, &S::dpdy, &S::flips, &S::u1, &S::v1, &S::du1du,
+                      &S::dv1du, &S::du1dv, &S::dv1dv, &S::du1dx, &S::dv1dx, &S::du1dy, &S::dv1dy, &S::color,
+                      &S::color_alpha);
   }
 
   bool has_footprint() const { return kKnowsDifferentials && dudx != nullptr; }

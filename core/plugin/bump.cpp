@@ -32,6 +32,14 @@ float* displacement_beside(const Tex<float>& displacement, const ShadingBatch& s
     parameter[i] = from[i] + step[i];
   });
   (along_u ? moved.u : moved.v) = parameter;
+  if (s.u1) {
+    const float *const du1 = along_u ? s.du1du : s.du1dv, *const dv1 = along_u ? s.dv1du : s.dv1dv;
+    moved.u1 = s.arena->floats(s.n), moved.v1 = s.arena->floats(s.n);
+    for_lanes(s.n, [&](int i) {
+      moved.u1[i] = s.u1[i] + du1[i] * step[i];
+      moved.v1[i] = s.v1[i] + dv1[i] * step[i];
+    });
+  }
   return displacement(moved);
 }
 

@@ -9,6 +9,7 @@
 #include "core/base/attachment.h"
 #include "core/base/diagnostics.h"
 #include "core/base/effect.h"
+#include "core/base/mesh_attributes.h"
 #include "core/base/render_space.h"
 #include "core/base/stopwatch.h"
 
@@ -24,6 +25,7 @@ struct PrepareContext {
   RenderSpace space;
   double scene_radius = 1;  ///< Render space: radius of a sphere around the origin that holds all geometry.
   int samples_per_pixel = 1;
+  MeshAttributes attributes;  ///< Of meshes, which are asked for.
   /// What reading pictures takes is added here, or nowhere if null. Lights alone do, which are prepared one by one.
   Elapsed* reading_pictures = nullptr;
 };
@@ -42,6 +44,9 @@ class Plugin {
 
   /// The effects the bound parameters call for, but for those of the textures they are, which have their own.
   virtual EffectSet effects() const { return {}; }
+
+  /// Of a texture: what it asks of meshes, without the textures that it is made of. After binding.
+  virtual MeshAttributes attributes_read() const { return {}; }
 
   /// The textures of its parameters that it ever evaluates. After binding.
   virtual std::vector<const Plugin*> textures_read() const { return {}; }

@@ -62,7 +62,7 @@ size_t remove_degenerate_triangles(MeshData& mesh);
 /// A shape that is, or turns itself into, a triangle mesh.
 class MeshShape : public Shape {
  public:
-  /// Reads or builds the mesh. Indices are valid and no value is NaN or infinite when this returns true;
+  /// Reads or builds the mesh; what PrepareContext::attributes does not ask for may be left out. Indices are valid and no value is NaN or infinite when this returns true;
   /// otherwise an error has been reported.
   virtual bool build_mesh(const PrepareContext& ctx, MeshData& out) = 0;
 };

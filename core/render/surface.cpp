@@ -86,11 +86,25 @@ void compute_footprints(const SurfaceHits& h, const ShadingBatch& s, const Geome
   });
 }
 
-ShadingBatch allocate(const SurfaceHits& h, bool bumps, Arena& arena) {
+/// The footprints of the second set of texture coordinates, from those of the first.
+void second_footprints(const ShadingBatch& s) {
+  for_lanes(s.n, [&](int i) {
+    s.du1dx[i] = s.du1du[i] * s.dudx[i] + s.du1dv[i] * s.dvdx[i];
+    s.dv1dx[i] = s.dv1du[i] * s.dudx[i] + s.dv1dv[i] * s.dvdx[i];
+    s.du1dy[i] = s.du1du[i] * s.dudy[i] + s.du1dv[i] * s.dvdy[i];
+    s.dv1dy[i] = s.dv1du[i] * s.dudy[i] + s.dv1dv[i] * s.dvdy[i];
+  });
+}
+
+ShadingBatch allocate(const SurfaceHits& h, bool bumps, const MeshAttributes& attributes, Arena& arena) {
   ShadingBatch s = with_all_fields<ShadingBatch>();
   const bool footprints = h.has_differentials();
   if (!bumps && !footprints) s.dndu = s.dndv = {};
   if (!footprints) s.dudx = s.dvdx = s.dudy = s.dvdy = nullptr, s.dpdx = s.dpdy = {};
+  if (!attributes.uvs1) s.u1 = s.v1 = nullptr;
+  if (!attributes.uvs1 || (!bumps && !footprints)) s.du1du = s.dv1du = s.du1dv = s.dv1dv = nullptr;
+  if (!attributes.uvs1 || !footprints) s.du1dx = s.dv1dx = s.du1dy = s.dv1dy = nullptr;
+  if (!attributes.colors) s.color = {}, s.color_alpha = nullptr;
   s = allocate_like(s, h.n, arena);
   s.n = h.n;
   s.arena = &arena;
@@ -100,7 +114,7 @@ ShadingBatch allocate(const SurfaceHits& h, bool bumps, Arena& arena) {
 }  // namespace
 
 ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& arena) {
-  const ShadingBatch s = allocate(h, scene.plan.live(Effect::Bump), arena);
+  const ShadingBatch s = allocate(h, scene.plan.live(Effect::Bump), scene.attributes, arena);
   // Footprints alone need those of the geometry, and instances turn what there is: else there is no telling them apart.
   const bool apart = h.has_differentials() || scene.has_instances;
   const GeometricPartials g =
@@ -118,12 +132,15 @@ ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& a
           mesh_surfaces(scene, h, first, run, partials, arena);
         } else if (shape.analytic) {
           analytic_surfaces(scene, h, first, run, partials);
+          no_attributes(run);
         } else {
           curve_surfaces(scene, h, first, run, partials);
+          no_attributes(run);
         }
       });
   if (scene.has_instances) place_surfaces(scene, h, s, g);
   if (h.has_differentials()) compute_footprints(h, s, g);
+  if (s.du1dx) second_footprints(s);
   return s;
 }
 

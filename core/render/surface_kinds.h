@@ -25,6 +25,13 @@ struct GeometricPartials {
 /// space of the shapes' group.
 void mesh_surfaces(const Scene& scene, const SurfaceHits& hits, int first, const ShadingBatch& s,
                    const GeometricPartials& g, Arena& arena);
+/// What vertices have beside, of the same hits, where somebody asks for it; `bary_u` and `bary_v` are where the points are
+/// in their triangles. After their partial derivatives.
+void mesh_attributes(const Scene& scene, const SurfaceHits& hits, int first, const ShadingBatch& s,
+                     const GeometricPartials& g, const float* bary_u, const float* bary_v);
+/// The same of points on shapes that have nothing beside.
+void no_attributes(const ShadingBatch& s);
+
 /// The same of analytic shapes,
 void analytic_surfaces(const Scene& scene, const SurfaceHits& hits, int first, const ShadingBatch& s,
                        const GeometricPartials& g);

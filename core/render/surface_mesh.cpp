@@ -49,7 +49,7 @@ struct TriangleLanes {
   Corners p, n, s;
   float *u0, *v0, *u1, *v1, *u2, *v2;
   float* unit;  ///< The length of a world unit.
-  bool any_normals = false, any_tangents = false, any_exact = false;
+  bool any_normals = false, any_tangents = false, any_signs = false, any_exact = false;
 
   /// Texture coordinates of triangles of one mesh, as Corners::gather(); pbrt's where the mesh has none.
   void gather_uvs(const Mesh& mesh, const uint32_t* prim, int first, int count) const {
@@ -87,6 +87,7 @@ TriangleLanes gather_triangles(const Scene& scene, const SurfaceHits& h, int off
     std::fill_n(t.unit + first, n, shape.unit);
     t.any_normals |= !mesh.normals.empty();
     t.any_tangents |= !mesh.tangents.empty();
+    t.any_signs |= !mesh.bitangent_signs.empty();
     t.any_exact |= !mesh.exact.empty();
   });
   const auto gather_vectors = [&](Corners& to, std::vector<float> Mesh::*vectors) {
@@ -166,6 +167,21 @@ void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float
     s.ns.set(i, pick(shaded, turned, s.ns[i]));
     s.ng.set(i, pick(shaded & (dot(ng, turned) < 0), -ng, ng));
   });
+}
+
+/// Of meshes that say where their bitangents point: dpdu goes along the tangent, and dpdv to that side of it. For others
+/// triangle_shading() has turned both around the normal by 180 degrees, as pbrt: cross(cross(s, n), n) is -s.
+void turn_bitangents(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const float* bary_u,
+                     const float* bary_v) {
+  for (int i = 0; i < s.n; ++i) {
+    const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
+    if (mesh.bitangent_signs.empty()) continue;
+    const uint32_t* const index = mesh.corners(h.prim[first + i]);
+    const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
+    const float* const sign = mesh.bitangent_signs.data();
+    s.dpdu.set(i, -s.dpdu[i]);
+    if (!(b0 * sign[index[0]] + b1 * sign[index[1]] + b2 * sign[index[2]] < 0)) s.dpdv.set(i, -s.dpdv[i]);
+  }
 }
 
 /// Derivatives of the interpolated normal, made a unit vector, with respect to (u, v).
@@ -262,7 +278,9 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
   if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
   if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
   if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
+  if (t.any_signs) turn_bitangents(scene, h, first, s, bu, bv);
   if (s.dndu) triangle_normal_derivatives(t, s, bu, bv);
+  if (s.u1 || s.color) mesh_attributes(scene, h, first, s, g, bu, bv);
 }
 
 }  // namespace whit

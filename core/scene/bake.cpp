@@ -47,8 +47,13 @@ std::unique_ptr<Mesh> bake_vertices(const MeshData& data, const Mat4d& object_to
     mesh->tangents.resize(3 * vertices);
     for (size_t i = 0; i < vertices; ++i)
       put(mesh->tangents, i, transform_vector(object_to_group, point_of(data.tangents, i)));
+    // What is mirrored has its bitangents on the other side of normal and tangent.
+    const float mirror = swaps_handedness(object_to_group) ? -1.0f : 1.0f;
+    for (const float sign : data.bitangent_signs) mesh->bitangent_signs.push_back(sign < 0 ? -mirror : mirror);
   }
   mesh->uvs = data.uvs;
+  mesh->uvs1 = data.uvs1;
+  mesh->colors = data.colors;
   return mesh;
 }
 

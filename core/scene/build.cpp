@@ -132,6 +132,7 @@ std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const Buil
   if (!options.only_check) build_accel(context, *scene);
   times.ray_tracer = laps.lap();
   scene->sort_keys = std::max(geometry.sort_keys, everything ? 2 : 0);
+  if (everything) scene->attributes = {true, true};
   scene->has_instances = kKnowsInstances && (!scene->instances.empty() || everything);
   if (diagnostics.has_errors() && !options.keep_going) return nullptr;
   return scene;

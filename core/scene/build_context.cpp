@@ -23,6 +23,7 @@ PrepareContext BuildContext::preparation(SourcePos where, Diagnostics& reports) 
   context.space = scene.space;
   context.scene_radius = scene_radius;
   context.samples_per_pixel = scene.samples_per_pixel;
+  context.attributes = scene.plan.attributes;
   context.reading_pictures = reading_pictures;
   return context;
 }

@@ -114,6 +114,7 @@ void add_shape(const BuildContext& context, const Group& group, const LoadedShap
     baking.degenerate.add(baked.degenerate, d.where);
     if (baked.mesh->indices.empty()) return;
     shape.mesh = scene.meshes.emplace_back(std::move(baked.mesh)).get();
+    scene.attributes |= {!shape.mesh->uvs1.empty(), !shape.mesh->colors.empty()};
   } else if (baked.curves) {
     shape.curves = scene.curves.emplace_back(std::move(baked.curves)).get();
   } else {

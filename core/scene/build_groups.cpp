@@ -26,6 +26,8 @@ void load_shape(const BuildContext& context, Bound<Shape>& bound, LoadedShape& l
   const PrepareContext preparation = context.preparation(d.where, reports);
   if (auto* mesh = dynamic_cast<MeshShape*>(&shape)) {
     if (!mesh->build_mesh(preparation, loaded.mesh)) return;
+    if (!preparation.attributes.uvs1) loaded.mesh.uvs1 = {};
+    if (!preparation.attributes.colors) loaded.mesh.colors = {};
     loaded.bounds = mesh_bounds(loaded.mesh, loaded.to_group);
   } else if (auto* curves = dynamic_cast<CurveShape*>(&shape)) {
     if (!curves->build_curves(preparation, loaded.curves)) return;

@@ -34,6 +34,7 @@ class Planner {
     visit_camera();
     forgo_bounces();
     note_ignored();
+    if (plan_.everything_on) plan_.attributes = {true, true};
     plan_.needed = plan_.called_for - plan_.off - forgone_;
     for_effects(plan_.called_for, [&](Effect e) {
       if (plan_.off.has(e)) use(e).why_off = "not of this integrator";
@@ -82,6 +83,7 @@ class Planner {
     call_for(effects, texture.where, description_.textures[static_cast<size_t>(index)].plugin);
     if (is_off(Effect::Textures)) return;
     live |= now;
+    plan_.attributes |= texture.plugin->attributes_read();
     for (const TextureUse& t : texture.textures) visit_texture(t.texture, filtered);
   }
 

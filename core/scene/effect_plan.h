@@ -51,6 +51,7 @@ struct EffectPlan {
   // planner's.)
   std::vector<uint8_t> object_live, shape_live, texture_live, light_live;
   std::vector<uint8_t> material_live;  ///< Index of BoundScene::materials.
+  MeshAttributes attributes;           ///< Of meshes, that live textures ask for.
   bool direct_light = false;           ///< A surface scatters, and a light can be sampled: there is direct light.
   std::vector<Ignored> ignored;
 

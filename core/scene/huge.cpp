@@ -146,6 +146,8 @@ MeshData take_huge(MeshData& mesh, std::span<const uint32_t> huge) {
     };
     copy(taken.owned_positions, mesh.positions, 3), copy(taken.normals, mesh.normals, 3);
     copy(taken.tangents, mesh.tangents, 3), copy(taken.uvs, mesh.uvs, 2);
+    copy(taken.bitangent_signs, mesh.bitangent_signs, 1);
+    copy(taken.uvs1, mesh.uvs1, 2), copy(taken.colors, mesh.colors, 4);
     return found.first->second;
   };
   size_t left = 0, next = 0;

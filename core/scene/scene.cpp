@@ -3,7 +3,8 @@
 namespace whit {
 
 size_t Mesh::bytes() const {
-  return sizeof(float) * (positions.capacity() + normals.capacity() + tangents.capacity() + uvs.capacity()) +
+  return sizeof(float) * (positions.capacity() + normals.capacity() + tangents.capacity() + bitangent_signs.capacity() +
+                          uvs.capacity() + uvs1.capacity() + colors.capacity()) +
          sizeof(uint32_t) * indices.capacity() + sizeof(ExactTriangle) * exact.capacity();
 }
 

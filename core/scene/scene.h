@@ -20,9 +20,12 @@ namespace whit {
 struct Mesh {
   std::vector<float> positions;  ///< 3 per vertex, and one of padding that Embree may read.
   std::vector<uint32_t> indices;
-  std::vector<float> normals;   ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
-  std::vector<float> tangents;  ///< 3 per vertex or empty.
-  std::vector<float> uvs;       ///< 2 per vertex or empty.
+  std::vector<float> normals;          ///< 3 per vertex or empty; not unit: interpolated before normalising, as pbrt.
+  std::vector<float> tangents;         ///< 3 per vertex or empty.
+  std::vector<float> bitangent_signs;  ///< 1 or -1 per vertex, with `tangents`, or empty.
+  std::vector<float> uvs;              ///< 2 per vertex or empty.
+  std::vector<float> uvs1;             ///< A second set, or empty.
+  std::vector<float> colors;           ///< 4 per vertex or empty: linear red, green, blue and alpha.
   /// The triangles in double, or empty: those of a mesh of huge ones, which alone are in it (core/scene/huge.h).
   std::vector<ExactTriangle> exact;
   size_t triangle_count() const { return indices.size() / 3; }
@@ -30,6 +33,7 @@ struct Mesh {
   Vec3f normal(uint32_t i) const { return {normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]}; }
   Vec3f tangent(uint32_t i) const { return {tangents[3 * i], tangents[3 * i + 1], tangents[3 * i + 2]}; }
   Vec2f uv(uint32_t i) const { return {uvs[2 * i], uvs[2 * i + 1]}; }
+  const uint32_t* corners(uint32_t triangle) const { return &indices[3 * static_cast<size_t>(triangle)]; }
   Vec3d corner(size_t triangle, size_t k) const {
     if (exact.empty()) return Vec3d(position(indices[3 * triangle + k]));
     const ExactTriangle& t = exact[triangle];
@@ -58,10 +62,13 @@ struct SceneShape {
   const Mesh* mesh = nullptr;
   const Curves* curves = nullptr;
   const AnalyticShape* analytic = nullptr;
-  int material = 0;             ///< Index into Scene::materials.
-  int sort_key = 0;             ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
-  int emitter = -1;             ///< Index into Scene::emitters: of the only one, or of the first of a mesh.
-  int first_light = -1;         ///< Index into Scene::lights of the same; -1 where it is not sampled.
+  int material = 0;      ///< Index into Scene::materials.
+  int sort_key = 0;      ///< Equal for shapes that are shaded alike: same material, same kind of geometry.
+  int emitter = -1;      ///< Index into Scene::emitters: of the only one, or of the first of a mesh.
+  int first_light = -1;  ///< Index into Scene::lights of the same; -1 where it is not sampled.
+  /// Where not null, not all triangles of an emitting mesh are sampled: those of each triangle, -1 of those that are not.
+  /// `emitter` is then what is seen of these.
+  const std::vector<int32_t>* light_of_prim = nullptr;
   float unit = 1;               ///< The length of a world unit in the shape's group.
   SourcePos where;              ///< Its statement.
   bool flips = false;           ///< ReverseOrientation XOR handedness (meshes with normals: alone): normals flip.
@@ -123,7 +130,9 @@ struct Scene {
   std::vector<std::unique_ptr<AlphaTest>> alpha_tests;
   std::vector<const Material*> materials;
   std::vector<SceneShape> shapes;
-  std::vector<std::unique_ptr<const Light>> emitters;  ///< Emitting primitives of shapes.
+  std::vector<std::unique_ptr<const Light>> emitters;                        ///< Emitting primitives of shapes.
+  std::vector<std::unique_ptr<const std::vector<int32_t>>> lights_of_prims;  ///< SceneShape::light_of_prim
+  bool has_emission_maps = false;                                            ///< Some Light::emission_map().
   std::vector<SceneInstance> instances;
   std::vector<Mat4d> instance_keys;
   std::vector<SceneLight> lights;
@@ -139,6 +148,7 @@ struct Scene {
   int footprint_samples = 1;
   int sort_keys = 0;           ///< Number of different SceneShape::sort_key; hits are sorted by it where there are two.
   bool has_instances = false;  ///< Points are taken to render space.
+  MeshAttributes attributes;   ///< That are asked for, and that some mesh has.
   std::unique_ptr<LightChoice> light_choice;  ///< Null where the integrator samples every light.
   int chosen_lights = 0;                      ///< How many of them it chooses for each point, with replacement.
   std::unique_ptr<Accel> accel;

@@ -25,7 +25,7 @@ struct PlyMeshShape final : MeshShape {
       return false;
     }
     PlyMesh mesh;
-    if (const std::string error = parse_ply(file.bytes(), mesh); !error.empty()) {
+    if (const std::string error = parse_ply(file.bytes(), mesh, ctx.attributes); !error.empty()) {
       ctx.diagnostics->file_error(filename.where, fmt::format("cannot read {}: {}", filename.as_given, error));
       return false;
     }
@@ -38,12 +38,17 @@ struct PlyMeshShape final : MeshShape {
     out.indices = std::move(mesh.indices);
     out.normals = std::move(mesh.normals);
     out.uvs = std::move(mesh.uvs);
+    out.uvs1 = std::move(mesh.uvs1);
+    out.colors = std::move(mesh.colors);
+    out.tangents = std::move(mesh.tangents);
+    out.bitangent_signs = std::move(mesh.bitangent_signs);
     out.degenerate = remove_degenerate_triangles(out);
     if (mesh.bad_numbers > 0) {
-      ctx.diagnostics->warning(filename.where,
-                               fmt::format("{} has {} numbers of normals or surface parameters that are not finite",
-                                           filename.as_given, mesh.bad_numbers),
-                               "they count as 0");
+      ctx.diagnostics->warning(
+          filename.where,
+          fmt::format("{} has {} numbers of normals, tangents, surface parameters or colours that are not finite",
+                      filename.as_given, mesh.bad_numbers),
+          "they count as 0");
     }
     if (mesh.skipped_faces > 0) {
       ctx.diagnostics->warning(filename.where,
@@ -56,7 +61,13 @@ struct PlyMeshShape final : MeshShape {
 };
 
 const Register<PlyMeshShape> plymesh{
-    "plymesh", "A triangle mesh in a PLY file.",
+    "plymesh",
+    "A triangle mesh in a PLY file. Vertices have x y z and may have normals (nx ny nz), texture coordinates (u v, "
+    "also "
+    "named s t, texture_u texture_v or texture_s texture_t), a second set of them (u1 v1), tangents (tx ty tz, and tw, "
+    "negative where the bitangent is the cross product of tangent and normal instead of normal and tangent) and "
+    "colours "
+    "(red green blue, and alpha). Colours are linear: floats as they are, integers as parts of their largest value.",
     param(&PlyMeshShape::filename, "filename", Unit::None, "The PLY file, ascii or binary. Required."), alpha_param(),
     shadowalpha_param()};
 

@@ -68,25 +68,36 @@ void map_planar(const AffineMap& from_render, const ShadingBatch& s, const Mappe
   });
 }
 
-void map_uv_turned(const TextureMapping2D& uv, const ShadingBatch& s, const MappedPoints& m) {
+/// A set of texture coordinates with its footprints.
+struct UvSet {
+  const float *u, *v, *dudx, *dvdx, *dudy, *dvdy;
+  UvSet(const ShadingBatch& s, bool second) : u(s.u), v(s.v), dudx(s.dudx), dvdx(s.dvdx), dudy(s.dudy), dvdy(s.dvdy) {
+    if (second && s.u1) u = s.u1, v = s.v1, dudx = s.du1dx, dvdx = s.dv1dx, dudy = s.du1dy, dvdy = s.dv1dy;
+  }
+};
+
+void map_uv_turned(const TextureMapping2D& uv, const ShadingBatch& s, const UvSet& from, const MappedPoints& m) {
   for_lanes(s.n, [&](int i) {
-    m.s[i] = uv.su * s.u[i] + uv.s_of_v * s.v[i] + uv.du;
-    m.t[i] = uv.t_of_u * s.u[i] + uv.sv * s.v[i] + uv.dv;
+    m.s[i] = uv.su * from.u[i] + uv.s_of_v * from.v[i] + uv.du;
+    m.t[i] = uv.t_of_u * from.u[i] + uv.sv * from.v[i] + uv.dv;
   });
   if (!s.has_footprint()) return;
   for_lanes(s.n, [&](int i) {
-    m.dsdx[i] = uv.su * s.dudx[i] + uv.s_of_v * s.dvdx[i], m.dtdx[i] = uv.t_of_u * s.dudx[i] + uv.sv * s.dvdx[i];
-    m.dsdy[i] = uv.su * s.dudy[i] + uv.s_of_v * s.dvdy[i], m.dtdy[i] = uv.t_of_u * s.dudy[i] + uv.sv * s.dvdy[i];
+    m.dsdx[i] = uv.su * from.dudx[i] + uv.s_of_v * from.dvdx[i];
+    m.dtdx[i] = uv.t_of_u * from.dudx[i] + uv.sv * from.dvdx[i];
+    m.dsdy[i] = uv.su * from.dudy[i] + uv.s_of_v * from.dvdy[i];
+    m.dtdy[i] = uv.t_of_u * from.dudy[i] + uv.sv * from.dvdy[i];
   });
 }
 
 void map_uv(const TextureMapping2D& uv, const ShadingBatch& s, const MappedPoints& m) {
-  if (uv.turns) return map_uv_turned(uv, s, m);
-  for_lanes(s.n, [&](int i) { m.s[i] = uv.su * s.u[i] + uv.du, m.t[i] = uv.sv * s.v[i] + uv.dv; });
+  const UvSet from(s, uv.second_uvs);
+  if (uv.turns) return map_uv_turned(uv, s, from, m);
+  for_lanes(s.n, [&](int i) { m.s[i] = uv.su * from.u[i] + uv.du, m.t[i] = uv.sv * from.v[i] + uv.dv; });
   if (!s.has_footprint()) return;
   for_lanes(s.n, [&](int i) {
-    m.dsdx[i] = uv.su * s.dudx[i], m.dtdx[i] = uv.sv * s.dvdx[i];
-    m.dsdy[i] = uv.su * s.dudy[i], m.dtdy[i] = uv.sv * s.dvdy[i];
+    m.dsdx[i] = uv.su * from.dudx[i], m.dtdx[i] = uv.sv * from.dvdx[i];
+    m.dsdy[i] = uv.su * from.dudy[i], m.dtdy[i] = uv.sv * from.dvdy[i];
   });
 }
 

@@ -33,7 +33,8 @@ struct TextureMapping2D {
   float su = 1, sv = 1, du = 0, dv = 0;  ///< Uv: s = su u + du, t = sv v + dv,
   float s_of_v = 0, t_of_u = 0;          ///< and these times the other; `turns` where they are not 0.
   bool turns = false;
-  AffineMap from_render;  ///< Spherical, Cylindrical: to texture space. Planar: x gives s, y gives t.
+  bool second_uvs = false;  ///< (u, v) are those of the second set, where a mesh has it.
+  AffineMap from_render;    ///< Spherical, Cylindrical: to texture space. Planar: x gives s, y gives t.
 
   MappedPoints map(const ShadingBatch& s) const;
 };
@@ -48,6 +49,7 @@ class Texture2D : public Texture<T> {
   Choice mapping;  ///< As TextureMapping2D::Kind.
   float uscale = 1, vscale = 1, udelta = 0, vdelta = 0;
   FloatList uvmatrix;  ///< 6, or none.
+  int uvset = 0;
   Vector v1, v2;
 
   void check(Diagnostics& diagnostics, SourcePos) override {
@@ -55,6 +57,8 @@ class Texture2D : public Texture<T> {
       diagnostics.error(uvmatrix.where, "\"uvmatrix\" has " + std::to_string(uvmatrix.size()) + " numbers",
                         "it takes 6: s = m0 u + m1 v + m2, t = m3 u + m4 v + m5");
   }
+
+  MeshAttributes attributes_read() const override { return {.uvs1 = asks_second_uvs(), .colors = false}; }
 
   bool read(Diagnostics& diagnostics, SourcePos statement) override {
     if (mapping.index == TextureMapping2D::Uv || is_invertible(this->texture_to_world)) return true;
@@ -66,6 +70,7 @@ class Texture2D : public Texture<T> {
   bool prepare(const PrepareContext& ctx) override {
     map_ = make_mapping(mapping.index, {uscale, vscale, udelta, vdelta, uvmatrix.values}, v1.value, v2.value,
                         this->texture_to_world, ctx.space);
+    map_.second_uvs = asks_second_uvs();
     return true;
   }
 
@@ -73,6 +78,7 @@ class Texture2D : public Texture<T> {
   TextureMapping2D map_;
 
  private:
+  bool asks_second_uvs() const { return mapping.index == TextureMapping2D::Uv && uvset == 1; }
   struct UvParameters {
     float su, sv, du, dv;
     std::span<const double> matrix;
@@ -106,6 +112,11 @@ class Register2D : public Register<Plugin2D> {
                 &Texture2D<T>::uvmatrix, "uvmatrix", Unit::None,
                 "Six numbers m that take (u, v) to (m0 u + m1 v + m2, m3 u + m4 v + m5), before scale and shift; none "
                 "leave it as it is (uv mapping)."),
+            param(
+                &Texture2D<T>::uvset, "uvset", 0, Unit::None,
+                "Which of a mesh's sets of texture coordinates (u, v) are, 0 or 1; of shapes that have one it is that "
+                "(uv mapping).",
+                Range{0, 1}),
             param(&Texture2D<T>::v1, "v1", Vector{{1, 0, 0}}, Unit::None,
                   "World-space direction of s, one over the length of a repeat (planar mapping)."),
             param(&Texture2D<T>::v2, "v2", Vector{{0, 1, 0}}, Unit::None,

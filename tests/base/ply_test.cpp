@@ -245,5 +245,75 @@ TEST(Ply, GarbageAfterAnyByteNeverCrashes) {
   }
 }
 
+TEST(Ply, AttributesAreReadWhereAskedFor) {
+  const std::string properties =
+      std::string(kXyz) +
+      "property uchar red\nproperty uchar green\nproperty uchar blue\nproperty uchar alpha\nproperty float u1\n"
+      "property float v1\nproperty float tx\nproperty float ty\nproperty float tz\nproperty float tw\n";
+  const auto file = [&](Order order) {
+    std::string s = header(order == Order::Big ? "binary_big_endian" : "binary_little_endian", 3, properties, 1);
+    for (int v = 0; v < 3; ++v) {
+      for (int c = 0; c < 3; ++c) s += bytes(order, float(c == v));
+      s += std::string{static_cast<char>(51), static_cast<char>(102 + v), static_cast<char>(255), 0};
+      for (const float x : {0.5f + float(v), -1.0f, 1.0f, 2.0f, float(v), v == 1 ? -1.0f : 1.0f}) s += bytes(order, x);
+    }
+    s += static_cast<char>(3);
+    for (const int i : {0, 1, 2}) s += bytes(order, i);
+    return s;
+  };
+  for (const Order order : {Order::Little, Order::Big}) {
+    PlyMesh mesh;
+    ASSERT_EQ(parse_ply(file(order), mesh), "");
+    EXPECT_TRUE(mesh.uvs1.empty() && mesh.colors.empty());
+    EXPECT_EQ(mesh.tangents, (std::vector<float>{1, 2, 0, 1, 2, 1, 1, 2, 2}));  // surfaces themselves ask for these
+    EXPECT_EQ(mesh.bitangent_signs, (std::vector<float>{1, -1, 1}));
+    ASSERT_EQ(parse_ply(file(order), mesh, {.uvs1 = true, .colors = true}), "");
+    EXPECT_EQ(mesh.uvs1, (std::vector<float>{0.5f, -1, 1.5f, -1, 2.5f, -1}));
+    ASSERT_EQ(mesh.colors.size(), 12u);
+    for (size_t v = 0; v < 3; ++v) {
+      const float expected[] = {51 / 255.0f, (102 + float(v)) / 255, 1, 0};
+      for (size_t c = 0; c < 4; ++c) EXPECT_EQ(mesh.colors[4 * v + c], expected[c]);
+    }
+    EXPECT_TRUE(mesh.uvs.empty() && mesh.normals.empty());
+    EXPECT_EQ(mesh.positions[4], 1);
+  }
+}
+
+TEST(Ply, AttributesInAsciiMayBeIncompleteAndUnsound) {
+  // Floats as they are, alpha 1 where there is none; what is not finite is 0 and counted.
+  const std::string ends = "3 0 1 2\n";
+  PlyMesh mesh;
+  const MeshAttributes all{.uvs1 = true, .colors = true};
+  ASSERT_EQ(parse_ply(header("ascii", 3,
+                             std::string(kXyz) + "property float red\nproperty float green\nproperty float blue\n"
+                                                 "property float u1\nproperty float tx\nproperty float tw\n",
+                             1) +
+                          "0 0 0 2.5 nan 0 1 1 1\n1 0 0 0 1 inf 1 1 1\n0 1 0 0 0 0 1 1 1\n" + ends,
+                      mesh, all),
+            "");
+  EXPECT_EQ(mesh.colors, (std::vector<float>{2.5f, 0, 0, 1, 0, 1, 0, 1, 0, 0, 0, 1}));
+  EXPECT_EQ(mesh.bad_numbers, 2u);
+  EXPECT_TRUE(mesh.uvs1.empty());             // v1 is missing
+  EXPECT_TRUE(mesh.tangents.empty());         // ty and tz are
+  EXPECT_TRUE(mesh.bitangent_signs.empty());  // and without tangents a sign says nothing
+  // 16 bits, and a list by the name of a colour.
+  ASSERT_EQ(
+      parse_ply(header("ascii", 3,
+                       std::string(kXyz) + "property ushort red\nproperty ushort green\nproperty ushort blue\n", 1) +
+                    "0 0 0 65535 0 0\n1 0 0 0 13107 0\n0 1 0 0 0 0\n" + ends,
+                mesh, all),
+      "");
+  EXPECT_EQ(mesh.colors[0], 1.0f);
+  EXPECT_EQ(mesh.colors[5], 13107 / 65535.0f);
+  ASSERT_EQ(
+      parse_ply(
+          header("ascii", 3,
+                 std::string(kXyz) + "property list uchar float red\nproperty float green\nproperty float blue\n", 1) +
+              "0 0 0 1 5 0 0\n1 0 0 0 0 0\n0 1 0 2 1 1 0 0\n" + ends,
+          mesh, all),
+      "");
+  EXPECT_TRUE(mesh.colors.empty());
+}
+
 }  // namespace
 }  // namespace whit

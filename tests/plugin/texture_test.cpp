@@ -266,6 +266,41 @@ TEST(Textures, ImagemapIsReadWhenARayMeetsIt) {
   EXPECT_TRUE(map->effects().has(Effect::TextureFiltering));
 }
 
+TEST(Threshold, IsOneFromTheEdgeOn) {
+  // bilerp of 0 and 1 along u is u itself.
+  const auto ramp = [](double edge, double u) {
+    auto texture = make_plugin<Texture<float>>("float texture", "threshold",
+                                               {test::floats("value", {u}), test::floats("edge", {edge})});
+    EXPECT_TRUE(texture.silent());
+    return *texture->constant();
+  };
+  EXPECT_EQ(ramp(0.5, 0.5), 1);
+  EXPECT_EQ(ramp(0.5, 0.49), 0);
+  EXPECT_EQ(ramp(0.25, 0.3), 1);
+  EXPECT_EQ(*make_plugin<Texture<float>>("float texture", "threshold")->constant(), 1);
+}
+
+TEST(VertexColor, IsTheMeshsOrOne) {
+  const std::pair<const char*, float> channels[] = {
+      {"alpha", 0.3f}, {"red", 0.1f}, {"green", 0.5f}, {"blue", 0.9f}, {"luminance", luminance(RGB(0.1f, 0.5f, 0.9f))}};
+  auto colours = make_plugin<Texture<RGB>>("spectrum texture", "vertexcolor");
+  ASSERT_TRUE(colours.silent());
+  EXPECT_TRUE(colours->attributes_read().colors);
+  ShadingPoints points(1);
+  const RGBLanes out = points.arena.rgb(1);
+  colours->evaluate(points.s, out);
+  EXPECT_EQ(out[0], RGB(1.0f));
+  for (const auto& [channel, expected] : channels)
+    EXPECT_EQ(values(*make_texture("vertexcolor", {string_choice("channel", channel)}).plugin, points.s)[0], 1);
+  points.s.color = points.arena.rgb(1), points.s.color_alpha = points.arena.floats(1);
+  points.s.color.set(0, {0.1f, 0.5f, 0.9f}), points.s.color_alpha[0] = 0.3f;
+  colours->evaluate(points.s, out);
+  EXPECT_EQ(out[0], RGB(0.1f, 0.5f, 0.9f));
+  for (const auto& [channel, expected] : channels)
+    EXPECT_EQ(values(*make_texture("vertexcolor", {string_choice("channel", channel)}).plugin, points.s)[0], expected);
+  EXPECT_EQ(values(*make_texture("vertexcolor", {}).plugin, points.s)[0], 0.3f);
+}
+
 TEST(EveryTexture, BatchOfNEqualsNBatchesOfOne) {
   for (const PluginInfo* info : list_plugins("float texture")) {
     if (info->name == "imagemap") continue;  // needs a file; tests/image covers its lookups
