@@ -69,6 +69,8 @@ class Light : public Plugin {
   virtual bool is_environment() const { return false; }
   /// Surfaces that emit are seen by rays that meet them: the radiance that goes back along the ray.
   virtual RGB emitted(const LightHit&) const { return RGB(0.0f); }
+  /// Unless null, what these are to be multiplied by, at the point of the surface.
+  virtual const Tex<RGB>* emission_map() const { return nullptr; }
   /// Whether such a surface has two fronts.
   virtual bool is_two_sided() const { return false; }
   /// Adds the radiance arriving along n escaped rays (origin o, unit direction d, render space) to out. Unless null,
@@ -104,6 +106,10 @@ class AreaLight : public Plugin {
   std::string group;  ///< "lightgroup".
   /// Emitted radiance, the same in every direction of the emitting side(s).
   virtual RGB radiance() const = 0;
+  /// Unless null, by what it is to be multiplied at each point of the surface.
+  virtual const Tex<RGB>* map() const { return nullptr; }
+  /// Whether other surfaces look for its light. Else it is only seen.
+  virtual bool lights() const { return true; }
   virtual bool two_sided() const = 0;
   /// As Light::sample_count().
   virtual int sample_count() const { return 1; }

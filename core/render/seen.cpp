@@ -4,8 +4,10 @@
 
 #include "core/base/fastmath.h"
 #include "core/batch/gather.h"
+#include "core/batch/runs.h"
 #include "core/render/aov_plan.h"
 #include "core/render/tracer.h"
+#include "core/scene/emission_map.h"
 
 namespace whit {
 
@@ -46,6 +48,44 @@ Seen Tracer::escaped(const Rays& rays, const Hits& hits, Heuristic heuristic) {
   return seen;
 }
 
+namespace {
+
+/// The number of the light that samples what is met of an emitting shape.
+int number_of(const SceneShape& shape, int prim) {
+  if (shape.first_light < 0) return DirectSamples::kNone;
+  if (!shape.light_of_prim) return shape.first_light + prim;
+  const int32_t number = (*shape.light_of_prim)[static_cast<size_t>(prim)];
+  return number < 0 ? DirectSamples::kNone : number;
+}
+
+/// What is seen there.
+const Light& light_of(const Scene& scene, const SceneShape& shape, int prim, int number) {
+  if (!shape.light_of_prim) return *scene.emitters[static_cast<size_t>(shape.emitter + prim)];
+  return number < 0 ? *scene.emitters[static_cast<size_t>(shape.emitter)]
+                    : *scene.lights[static_cast<size_t>(number)].light;
+}
+
+/// By what the radiance of points is to be multiplied; of those that emit.
+RGBLanes emission_maps(const Scene& scene, const Points& points, Arena& arena) {
+  const RGBLanes out = arena.rgb(points.n);
+  for_runs(
+      0, points.n, [&](int i) { return points.hits.shape[i]; },
+      [&](int first, int last) {
+        const int emitter = scene.shapes[static_cast<size_t>(points.hits.shape[first])].emitter;
+        const Tex<RGB>* map = emitter < 0 ? nullptr : scene.emitters[static_cast<size_t>(emitter)]->emission_map();
+        if (!map) {
+          for_lanes(last - first, [&](int i) { out.set(first + i, RGB(1.0f)); });
+          return;
+        }
+        const ArenaScope scratch(arena);
+        const RGBLanes values = emission_values(*map, points.at.range(first, last - first));
+        for_lanes(last - first, [&](int i) { out.set(first + i, values[i]); });
+      });
+  return out;
+}
+
+}  // namespace
+
 Seen Tracer::emitted(const Points& points, Heuristic heuristic) {
   Seen seen;
   if (!scene_.plan.live(Effect::AreaLights)) return seen;
@@ -61,14 +101,16 @@ Seen Tracer::emitted(const Points& points, Heuristic heuristic) {
   int32_t* numbers = arena_.alloc<int32_t>(n);
   seen = {n, lanes, arena_.rgb(n), numbers};
   const float* const pdf = heuristic ? points.rays.pdf : nullptr;
+  const RGBLanes maps = scene_.has_emission_maps ? emission_maps(scene_, points, arena_) : RGBLanes{};
   for (int k = 0; k < n; ++k) {
     const int i = lanes[k];
     const SceneShape& shape = shape_of(i);
     const auto prim = shape.mesh && shape.first_light >= 0 ? static_cast<int>(points.hits.prim[i]) : 0;
-    const Light& light = *scene_.emitters[static_cast<size_t>(shape.emitter + prim)];
+    numbers[k] = number_of(shape, prim);
+    const Light& light = light_of(scene_, shape, prim, numbers[k]);
     const Vec3f p = points.at.p[i], ng = points.at.ng[i];
-    numbers[k] = shape.first_light < 0 ? DirectSamples::kNone : shape.first_light + prim;
     RGB radiance = light.emitted({points.rays.o[i], points.rays.d[i], points.hits.t[i], p, ng});
+    if (maps) radiance = radiance * maps[i];
     if (pdf && numbers[k] >= 0 && pdf[i] < std::numeric_limits<float>::infinity() && !is_black(radiance)) {
       // Where a sample of the light would have been asked for.
       const Vec3f from = points.rays.from[i], to = p - from;

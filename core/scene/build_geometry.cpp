@@ -125,7 +125,8 @@ void add_shape(const BuildContext& context, const Group& group, const LoadedShap
   shape.unit = static_cast<float>(group.space.scale);
   shape.sort_key = baking.sort_keys.of(shape, index);
   const std::optional<Emission> emission = emission_of(context, d, shape.curves != nullptr, group.motion.has_value());
-  if (emission) baking.lit.push_back({index, group.accel_group == Accel::kWorld, *emission});
+  if (emission)
+    baking.lit.push_back({index, group.accel_group == Accel::kWorld, scene.bound.emission_of(d)->lights(), *emission});
   baking.plugins.push_back(&plugin);
   scene.shapes.push_back(shape);
 }

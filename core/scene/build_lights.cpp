@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/scene/emission_map.h"
 #include "core/scene/light_end.h"
 
 namespace whit {
@@ -31,11 +32,35 @@ bool is_too_far(const BuildContext& context, const Bound<Light>& light) {
   return true;
 }
 
+/// Those of a surface whose emission has a map: where that is black nothing is sampled, as on nearly all triangles of many
+/// a model.
+void add_mapped_emitters(Scene& scene, const LitShape& lit) {
+  SceneShape& shape = scene.shapes[static_cast<size_t>(lit.index)];
+  const std::vector<RGB> means = emission_means(shape, *lit.emission.map);
+  scene.emitters.push_back(make_seen_emitter(shape, lit.emission));
+  std::vector<int32_t> numbers(means.size(), -1);
+  for (size_t t = 0; t < means.size(); ++t) {
+    if (is_black(means[t])) continue;
+    if (shape.first_light < 0) shape.first_light = static_cast<int>(scene.lights.size());
+    numbers[t] = static_cast<int32_t>(scene.lights.size());
+    Emission emission = lit.emission;
+    emission.mean = means[t];
+    const auto prim = static_cast<uint32_t>(t);
+    scene.emitters.push_back(make_emitter(shape, prim, emission));
+    add_light(scene, {.light = scene.emitters.back().get(), .shape = lit.index, .prim = prim});
+  }
+  if (shape.first_light < 0) return;
+  shape.light_of_prim =
+      scene.lights_of_prims.emplace_back(std::make_unique<const std::vector<int32_t>>(std::move(numbers))).get();
+}
+
 /// As in pbrt, each triangle of an emitting mesh is a light of its own.
 void add_emitters(Scene& scene, const LitShape& lit) {
   SceneShape& shape = scene.shapes[static_cast<size_t>(lit.index)];
   shape.emitter = static_cast<int>(scene.emitters.size());
-  const bool sampled = lit.in_world && scene.plan.direct_light && !shape.curves;
+  const bool sampled = lit.in_world && lit.sampled && scene.plan.direct_light && !shape.curves;
+  scene.has_emission_maps |= lit.emission.map != nullptr;
+  if (lit.emission.map && sampled) return add_mapped_emitters(scene, lit);
   if (sampled) shape.first_light = static_cast<int>(scene.lights.size());
   const size_t count = sampled && shape.mesh ? shape.mesh->triangle_count() : 1;
   for (size_t t = 0; t < count; ++t) {
@@ -72,7 +97,13 @@ std::optional<Emission> emission_of(const BuildContext& context, const ShapeDesc
                                 "it glows; paths alone may meet it by chance");
   }
   // A curve always faces the ray, so it has no back that could be dark.
-  return Emission{light->radiance(), light->two_sided() || is_curve, light->sample_count(), &light->group};
+  Emission emission;
+  emission.radiance = light->radiance();
+  emission.map = light->map();
+  emission.two_sided = light->two_sided() || is_curve;
+  emission.samples = light->sample_count();
+  emission.group = &light->group;
+  return emission;
 }
 
 void build_lights(const BuildContext& context, std::span<const LitShape> lit, Scene& scene) {

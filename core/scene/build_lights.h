@@ -13,6 +13,7 @@ namespace whit {
 struct LitShape {
   int index;  ///< Into Scene::shapes.
   bool in_world;
+  bool sampled;  ///< As AreaLight::lights().
   Emission emission;
 };
 

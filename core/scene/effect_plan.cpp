@@ -100,7 +100,7 @@ class Planner {
     const bool emits = scene_.emission_of(d) && !moves(d.transform);
     // A constant alpha of 0 is a shape that is not there, or that lights unseen.
     const bool unseen = shape.plugin->alpha.is_constant() && shape.plugin->alpha.value() == 0 && !is_off(Effect::Alpha);
-    const bool lights = emits && !is_off(Effect::AreaLights) && d.object < 0;
+    const bool lights = emits && scene_.emission_of(d)->lights() && !is_off(Effect::AreaLights) && d.object < 0;
     if (unseen && !lights) return;
     plan_.shape_live[i] = 1;
     call_for(shape.plugin->effects(), d.where, d.plugin);
@@ -119,6 +119,10 @@ class Planner {
     const ShapeDescription& d = description_.shapes[i];
     const Entity& light = description_.area_lights[static_cast<size_t>(d.area_light)];
     if (!named_light_[static_cast<size_t>(d.area_light)]++) call_for({Effect::AreaLights}, light.where, light.plugin);
+    if (!is_off(Effect::AreaLights)) {
+      for (const TextureUse& t : scene_.area_lights[static_cast<size_t>(d.area_light)].textures)
+        visit_texture(t.texture, true);
+    }
     const bool is_curve = dynamic_cast<const CurveShape*>(scene_.shapes[i].plugin.get()) != nullptr;
     // One cause, however many shapes it is on.
     if (lights && !is_curve && (emitters_.empty() || emitters_.back() != &light)) emitters_.push_back(&light);

@@ -7,6 +7,8 @@
 #include "core/accel/ray_end.h"
 #include "core/base/box.h"
 #include "core/base/fastmath.h"
+#include "core/scene/emission_map.h"
+#include "core/scene/texture_points.h"
 
 namespace whit {
 namespace {
@@ -76,6 +78,7 @@ class Emitter : public Light {
   RGB emitted(const LightHit& hit) const override {
     return emission_.two_sided || dot(hit.ng, -hit.d) > 0 ? emission_.radiance : RGB(0.0f);
   }
+  const Tex<RGB>* emission_map() const override { return emission_.map; }
   float pdf(const LightHit&) const override { return 0; }
   bool is_two_sided() const override { return emission_.two_sided; }
   int sample_count() const override { return emission_.samples; }
@@ -84,8 +87,19 @@ class Emitter : public Light {
 
  protected:
   double power_of_area(double area) const {
-    return detail::kPiD * (emission_.two_sided ? 2 : 1) * area * strength_of(emission_.radiance);
+    return detail::kPiD * (emission_.two_sided ? 2 : 1) * area * strength_of(emission_.radiance * emission_.mean);
   }
+
+  /// What is sampled, times the map at the points that have been sampled.
+  void apply_map(const LightSamples& samples, const ShadingBatch& points) const {
+    const RGBLanes values = emission_values(*emission_.map, points);
+    times(samples.n, samples.radiance, values);
+    if (!samples.pdf) return;
+    for_lanes(samples.n, [&](int i) { samples.pdf[i] = whit::is_black(values[i]) ? 0.0f : samples.pdf[i]; });
+  }
+
+  /// The most that there may be: more than a map of halves can make of it.
+  RGB strongest_radiance() const { return emission_.map ? emission_.radiance * 1e6f : emission_.radiance; }
 
   const SceneShape shape_;
   const Emission emission_;
@@ -101,7 +115,9 @@ class TriangleEmitter final : public Emitter {
   double power(double scene_radius) const override;
 
  private:
-  const uint32_t* indices() const { return &shape_.mesh->indices[3 * static_cast<size_t>(prim_)]; }
+  using Emitter::apply_map;
+  void apply_map(const LightSamples& samples) const;
+  const uint32_t* indices() const { return shape_.mesh->corners(prim_); }
   uint32_t prim_;
 };
 
@@ -177,12 +193,28 @@ void TriangleEmitter::sample(const LightSamples& samples) const {
   };
   if (out.pdf) for_lanes(out.n, [=](int i) { sample(std::true_type(), i); });
   else for_lanes(out.n, [=](int i) { sample(std::false_type(), i); });
+  if (emission_.map) apply_map(samples);
   if (!out.q) return;
   for_lanes(samples.n, [=](int i) {
     const float root = safe_sqrt(out.u[i]);
     const float b0 = 1 - root, b1 = out.v[i] * root;
     out.q.set(i, a * b0 + b * b1 + c * (1 - b0 - b1));
   });
+}
+
+/// Where sample() has put its points.
+void TriangleEmitter::apply_map(const LightSamples& samples) const {
+  const ArenaScope scratch(*samples.arena);
+  const Mesh& mesh = *shape_.mesh;
+  const uint32_t* index = indices();
+  const Vec3f a = mesh.position(index[0]), b = mesh.position(index[1]), c = mesh.position(index[2]);
+  const ShadingBatch points = texture_points(&mesh, samples.n, *samples.arena);
+  for (int i = 0; i < samples.n; ++i) {
+    const float root = safe_sqrt(samples.u[i]), b0 = 1 - root, b1 = samples.v[i] * root, b2 = 1 - b0 - b1;
+    points.p.set(i, a * b0 + b * b1 + c * b2);
+    set_triangle_point(mesh, prim_, b1, b2, points, i);
+  }
+  apply_map(samples, points);
 }
 
 void AnalyticEmitter::sample(const LightSamples& samples) const {
@@ -199,6 +231,16 @@ void AnalyticEmitter::sample(const LightSamples& samples) const {
     const float weight = lit ? 1 / pdfs[i] : 0.0f;
     samples.radiance.set(i, {radiance.x * weight, radiance.y * weight, radiance.z * weight});
   });
+  if (!emission_.map) return;
+  const ShadingBatch points = texture_points(nullptr, samples.n, *samples.arena);
+  for (int i = 0; i < samples.n; ++i) {
+    const bool lit = pdfs[i] > 0;
+    const Vec3f p = samples.p[i] + samples.wi[i] * (lit ? samples.distance[i] : 0.0f);
+    points.p.set(i, p);
+    if (lit) set_analytic_point(*shape_.analytic, Vec3d(p), points, i);
+    else points.u[i] = points.v[i] = 0;
+  }
+  apply_map(samples, points);
 }
 
 /// The density of sample() at what a ray has met: per area, seen from where the ray began.
@@ -221,7 +263,7 @@ LightReach TriangleEmitter::reach() const {
   const uint32_t* index = indices();
   const std::array<Vec3d, 3> corners{Vec3d(mesh.position(index[0])), Vec3d(mesh.position(index[1])),
                                      Vec3d(mesh.position(index[2]))};
-  LightReach reach = within(triangle_box(corners[0], corners[1], corners[2]), emission_.radiance);
+  LightReach reach = within(triangle_box(corners[0], corners[1], corners[2]), strongest_radiance());
   const Vec3d n = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   reach.normal = Vec3f(n);
   if (emission_.two_sided) return reach;
@@ -234,7 +276,7 @@ LightReach AnalyticEmitter::reach() const {
   const AnalyticShape& shape = *shape_.analytic;
   const Box3d box = shape.object_bounds();
   const Box3d placed = transform_box(shape.object_to_scene(), box);
-  LightReach reach = within(placed, emission_.radiance);
+  LightReach reach = within(placed, strongest_radiance());
   if (!shape.is_planar()) return reach;
   // Of a plane, any sample has the normal, seen from anywhere.
   const Vec3d n = shape.sample_from(placed.max + Vec3d(1, 2, 3), 0.5, 0.5).n;
@@ -248,10 +290,14 @@ LightReach AnalyticEmitter::reach() const {
 
 }  // namespace
 
+std::unique_ptr<const Light> make_seen_emitter(const SceneShape& shape, const Emission& emission) {
+  return std::make_unique<Emitter>(shape, emission);
+}
+
 std::unique_ptr<const Light> make_emitter(const SceneShape& shape, uint32_t prim, const Emission& emission) {
   if (shape.mesh) return std::make_unique<TriangleEmitter>(shape, prim, emission);
   if (shape.analytic) return std::make_unique<AnalyticEmitter>(shape, emission);
-  return std::make_unique<Emitter>(shape, emission);
+  return make_seen_emitter(shape, emission);
 }
 
 }  // namespace whit

@@ -59,7 +59,10 @@ class Needed {
 
   void need_parts_of_shape(size_t i) {
     const ShapeDescription& d = description_.shapes[i];
-    if (d.area_light >= 0) area_lights_[static_cast<size_t>(d.area_light)] = true;
+    if (d.area_light >= 0) {
+      area_lights_[static_cast<size_t>(d.area_light)] = true;
+      need_textures(scene_.area_lights[static_cast<size_t>(d.area_light)].textures);
+    }
     need_transform(d.transform);
     need_textures(scene_.shapes[i].textures);
     const auto worn = static_cast<size_t>(scene_.shape_material[i]);

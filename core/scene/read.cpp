@@ -50,6 +50,9 @@ void drop_users(BoundScene& scene, std::vector<uint8_t> failed) {
     const bool lacks_member = std::any_of(material.materials.begin(), material.materials.end(), is_gone);
     if (lacks_member || uses_failed(material.textures)) material.plugin.reset();
   }
+  for (auto& light : scene.area_lights) {
+    if (uses_failed(light.textures)) light.plugin.reset();
+  }
   for (auto& shape : scene.shapes) {
     if (uses_failed(shape.textures)) shape.plugin.reset();
   }
