@@ -57,7 +57,7 @@ struct MetallicRoughness : Material {
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     float* const share = share_of(opacity, s);
     const float* const eta = filled(s, is_solid() ? clamp_to(ior, 1e-3f, 1e3f) : 1.0f);
-    if (is_solid()) out.eta = eta;
+    if (is_solid() && !is_zero(opacity)) out.eta = eta;
     if (may_be_below_one(opacity)) add_passage(s, grey(copy(share, s)), out.eta, out);
     if (is_zero(opacity)) return;
     const RGBLanes mirror = s.arena->rgb(s.n);
@@ -79,11 +79,14 @@ struct MetallicRoughness : Material {
   bool has_smooth_coat() const { return may_be_positive(clearcoat) && is_zero(clearcoatroughness); }
   /// Below the metal.
   bool is_body_seen() const { return may_be_below_one(metallic); }
+  /// Its light meets facets.
+  bool is_coupled() const { return is_body_seen() && may_be_positive(specular); }
   bool lets_through() const { return is_body_seen() && may_be_positive(transmission); }
   /// An index of 0 stands for one without bound: all is reflected, and nothing bends.
   bool is_solid() const { return lets_through() && !thin && ior > 0; }
   /// In a solid there is total reflection, whatever the outside reflects.
-  bool is_shiny() const { return may_be_positive(metallic) || may_be_positive(specular) || is_solid(); }
+  bool is_shiny() const { return may_be_positive(metallic) || is_coupled() || is_solid(); }
+  bool has_facets() const { return is_shiny() || lets_through(); }
   float own_f0() const {
     const float root = (ior - 1) / (ior + 1);
     return root * root;
@@ -145,17 +148,19 @@ struct MetallicRoughness : Material {
 
   Body make_body(const ShadingBatch& s, const float* share, const float* eta) const {
     const auto floats = [&] { return s.arena->floats(s.n); };
+    // What no lobe needs is not asked for, so that textures of it are not read.
+    const auto shares = [&](bool asked, const Tex<float>& t) { return asked ? share_of(t, s) : filled(s, 0); };
     Body at{share,
             eta,
             weights(basecolor, s),
             share_of(metallic, s),
-            share_of(transmission, s),
+            shares(is_body_seen(), transmission),
             s.arena->rgb(s.n),
             s.arena->rgb(s.n),
             floats(),
             floats()};
-    const RGBLanes tint = weights(specularcolor, s);
-    const float* const strength = share_of(specular, s);
+    const float* const strength = shares(is_body_seen(), specular);
+    const RGBLanes tint = is_coupled() ? weights(specularcolor, s) : grey(filled(s, 0));
     const float normal = own_f0();
     for_lanes(s.n, [&](int i) {
       const RGB t = tint[i], c = at.colour[i];
@@ -165,7 +170,7 @@ struct MetallicRoughness : Material {
       at.f90.set(i, RGB(lerp(m, g, 1)));
       at.own0[i] = largest(own), at.own90[i] = g;
     });
-    if (!is_smooth()) set_facets(s, at);
+    if (has_facets() && !is_smooth()) set_facets(s, at);
     return at;
   }
 
@@ -210,7 +215,7 @@ struct MetallicRoughness : Material {
   void add_diffuse(const ShadingBatch& s, const Body& at, LobeSet& out) const {
     const RGBLanes weight = s.arena->rgb(s.n);
     float* const position = s.arena->floats(s.n);
-    const bool coupled = may_be_positive(specular);
+    const bool coupled = is_coupled();
     Lobe& lobe = add(coupled ? LobeType::CoupledDiffuse : LobeType::LambertReflection, weight, out);
     lobe.a = position, lobe.c = at.own0, lobe.d = at.own90;
     if (s.n == 0) return;
