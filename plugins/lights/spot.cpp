@@ -1,5 +1,6 @@
-// A point that lights a cone, at full intensity inside and fading towards its edge by the fourth power. Source: Pharr,
-// Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.1.
+// A point that lights a cone, at full intensity inside and fading towards its edge by a power, pbrt-v3's the fourth.
+// Source: Pharr, Jakob, Humphreys, Physically Based Rendering, 3rd ed., 12.3.1. In glTF's KHR_lights_punctual it is the
+// second.
 
 #include <cmath>
 
@@ -13,7 +14,7 @@ namespace {
 class SpotLight final : public PointSource {
  public:
   Point from, to;
-  float coneangle = 30, conedeltaangle = 5;
+  float coneangle = 30, conedeltaangle = 5, falloff = 4;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (from.value == to.value) diagnostics.error(statement, "\"from\" and \"to\" of the spotlight are the same point");
@@ -38,13 +39,23 @@ class SpotLight final : public PointSource {
   }
 
   void factor(int n, const Vec3Lanes& d, const RGBLanes& out) const override {
+    if (falloff == 4) {  // the usual one, without powers
+      fade(n, d, out, [](float delta) { return delta * delta * (delta * delta); });
+    } else {
+      fade(n, d, out, [k = falloff](float delta) { return pow_of(max_of(delta, 0.0f), k); });
+    }
+  }
+
+  /// faded(x) is the light at x of the way from the edge to the full light, in cosines.
+  template <class Faded>
+  void fade(int n, const Vec3Lanes& d, const RGBLanes& out, const Faded& faded) const {
     const Vec3f axis = axis_;
     const float edge = edge_, full = full_;
     const float slope = edge > full ? 1 / (edge - full) : 0.0f;
     for_lanes(n, [=](int i) {
       const Vec3f off = normalize(d[i]) - axis;
       const float x = 0.5f * dot(off, off);  // 1 - cos of the angle to the axis
-      const float delta = (edge - x) * slope, fading = delta * delta * (delta * delta);
+      const float fading = faded((edge - x) * slope);
       const float inside = x <= full ? 1.0f : fading;
       out.set(i, RGB(x <= edge ? inside : 0.0f));
     });
@@ -67,6 +78,8 @@ const Register<SpotLight> spot{
     param(&SpotLight::coneangle, "coneangle", 30.0f, Unit::Degrees, "Angle between the cone's axis and its edge."),
     param(&SpotLight::conedeltaangle, "conedeltaangle", 5.0f, Unit::Degrees,
           "Angle inside the edge over which the light fades."),
+    param(&SpotLight::falloff, "falloff", 4.0f, Unit::None,
+          "The power of the cosine, from 0 at the edge to 1 where the light is full, by which it fades.", kPositive),
     lightgroup_param()};
 
 }  // namespace

@@ -70,6 +70,23 @@ TEST(Spot, FadesByTheFourthPowerOfTheCosine) {
   EXPECT_EQ(sample(*l.plugin, {0, 0, 0}).radiance, RGB(0.0f));
 }
 
+TEST(Spot, FadesByThePowerThatIsAskedFor) {
+  // glTF's, (cos a - cos outer) / (cos inner - cos outer) squared, and one that is no whole number; dark outside.
+  for (const double power : {2.0, 1.5}) {
+    const auto l = make_light("spot", {floats("falloff", {power})});
+    const auto red = [&](double degrees) {
+      return static_cast<double>(sample(*l.plugin, at_angle(degrees)).radiance.x);
+    };
+    const auto cosine = [](double degrees) { return std::cos(degrees * M_PI / 180); };
+    const double delta = (cosine(27) - cosine(30)) / (cosine(25) - cosine(30));
+    EXPECT_NEAR(red(27), std::pow(delta, power), 1e-5);
+    EXPECT_NEAR(red(24.99), 1, 1e-5);
+    EXPECT_EQ(red(30.01), 0);
+    EXPECT_EQ(red(90), 0);
+  }
+  EXPECT_FALSE(make_plugin<Light>("light", "spot", {floats("falloff", {0})}).good());
+}
+
 TEST(Spot, FromAndToAreTurnedByTheTransform) {
   Mat4d to_world = Mat4d().setScale(2.0);
   to_world = to_world * Mat4d(0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1) * Mat4d().setTranslation(Vec3d(0, 5, 0));
