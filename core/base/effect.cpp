@@ -25,7 +25,7 @@ constexpr EffectInfo kInfos[] = {
      12},
     {"texture-filtering", "textures averaged over a sample's footprint", "textures looked up at points",
      "differential rays from the camera and on, footprints", "", 48, 64},
-    {"bump", "normals tilted by a displacement", "smooth normals",
+    {"bump", "normals tilted by bump and normal maps", "smooth normals",
      "displacement evaluated three times; differential rays, footprints", "", 48, 64},
     {"alpha", "surfaces cut out by a texture", "whole surfaces", "the ray tracer asks at each hit", "", 0, 0},
     {"motion-blur", "things that move while the shutter is open", "all as it is when the shutter opens",

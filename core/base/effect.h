@@ -20,7 +20,7 @@ enum class Effect : uint8_t {
   Shadows,            ///< Whether something is between a surface and a light.
   Textures,           ///< Parameters that change over a surface.
   TextureFiltering,   ///< Textures averaged over the footprint of a sample.
-  Bump,               ///< Normals tilted by a displacement.
+  Bump,               ///< Normals tilted by bump and normal maps.
   Alpha,              ///< Surfaces cut out by a texture, from sight or from shadows.
   MotionBlur,         ///< Things that move while the shutter is open.
   DepthOfField,       ///< A lens with an area.

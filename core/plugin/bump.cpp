@@ -78,4 +78,23 @@ void apply_bump(const Tex<float>& displacement, float scale, ShadingBatch& s) {
   });
 }
 
+void apply_normal_map(const Tex<RGB>& map, float scale, ShadingBatch& s) {
+  const StageScope stage(s.clock, Stage::Textures);
+  const ArenaScope scratch(*s.arena);
+  const RGBLanes colour = map(s);
+  constexpr float kLeastCosine = 1e-3f;
+  for_lanes(s.n, [&](int i) {
+    const Vec3f n = s.ns[i], ng = s.ng[i], u = s.dpdu[i], v = s.dpdv[i];
+    const RGB c = colour[i];
+    const Vec3f tilted = normalize(normalize_any(u) * (scale * (2 * c.x - 1)) +
+                                   normalize_any(v) * (scale * (2 * c.y - 1)) + n * (2 * c.z - 1));
+    const Vec3f above = normalize(tilted + ng * max_of(kLeastCosine - dot(tilted, ng), 0.0f));
+    const bool usable = dot(above, above) > 0.5f;  // not where the tangents or the map are NaN
+    const Vec3f to{usable ? above.x : n.x, usable ? above.y : n.y, usable ? above.z : n.z};
+    s.ns.set(i, to);
+    s.dpdu.set(i, u - to * dot(u, to));
+    s.dpdv.set(i, v - to * dot(v, to));
+  });
+}
+
 }  // namespace whit

@@ -1,4 +1,4 @@
-// Bump mapping: tilts the shading frame by a displacement along the normal.
+// Bump and normal maps: what tilts the shading frame.
 #pragma once
 
 #include "core/batch/shading.h"
@@ -11,5 +11,10 @@ namespace whit {
 /// displacement, whose slope is zero. Source: PBR book, 3rd ed., 9.3; forward differences over half the
 /// footprint, or 0.0005 in (u, v) where there is none. The new normal is on the side of s.ng.
 void apply_bump(const Tex<float>& displacement, float scale, ShadingBatch& s);
+
+/// Replaces s.ns by the normals of a map, 2 c - 1 in the frame of s.dpdu, s.dpdv (both made unit vectors) and s.ns, the
+/// first two components scaled; after a bump map, whose frame it tilts. A normal that leaves the side of s.ng is lifted
+/// until it is just above the surface. s.dpdu and s.dpdv lose what they have along the new normal.
+void apply_normal_map(const Tex<RGB>& map, float scale, ShadingBatch& s);
 
 }  // namespace whit

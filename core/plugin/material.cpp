@@ -28,6 +28,7 @@ EffectSet Material::effects() const { return is_interface() ? EffectSet{Effect::
 std::vector<const Plugin*> Material::textures_read() const {
   std::vector<const Plugin*> textures = run_dry(*this).textures;
   if (!bump.is_constant()) textures.push_back(bump.texture().get());
+  if (!normalmap.is_constant()) textures.push_back(normalmap.texture().get());
   return textures;
 }
 

@@ -12,6 +12,13 @@ class Material : public Plugin {
  public:
   static constexpr const char* kCategory = "material";
   Tex<float> bump;  ///< Displacement along the normal, in scene units; constant means no bump.
+  /// Shading normals around (dpdu, dpdv, ns), each component of a unit vector as 0.5 + 0.5 x.
+  Tex<RGB> normalmap = Tex<RGB>(kFlatNormal);
+  float normalscale = 1;  ///< Of the normals' first two components.
+
+  /// The colour of normals that are not tilted: a map that has it everywhere is none.
+  static constexpr RGB kFlatNormal{0.5f, 0.5f, 1};
+  bool has_normal_map() const { return !normalmap.is_constant() || !(normalmap.value() == kFlatNormal); }
 
   /// Adds the lobes of the s.n points to `out`. Arrays come from s.arena. Weights are clamped to >= 0 by clamp0.
   /// It is also asked with no points, before prepare(): the lobes that it then adds, and the textures that it then
@@ -33,6 +40,16 @@ class Material : public Plugin {
 inline auto bumpmap_param() {
   return param(&Material::bump, "bumpmap", 0.0f, Unit::Length,
                "Displacement along the normal that tilts the shading normal.");
+}
+
+/// The normal map parameters, the same for every material that has one.
+inline auto normalmap_param() {
+  return param(&Material::normalmap, "normalmap", Material::kFlatNormal, Unit::None,
+               "Shading normals around tangent, bitangent and normal, whose components -1 to 1 are colours 0 to 1.");
+}
+inline auto normalscale_param() {
+  return param(&Material::normalscale, "normalscale", 1.0f, Unit::None,
+               "Scale of the normal map's components along tangent and bitangent.");
 }
 
 /// Clamps colours from below at 0, in place, and returns them: pbrt clamps reflectances only there.

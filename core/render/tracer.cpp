@@ -95,7 +95,10 @@ void Tracer::shade(Points& points) {
     MaterialRun& run =
         *new (runs + number++) MaterialRun{points.at.range(first, last - first), LobeSet(arena_), {}, first};
     const Material& material = *scene_.materials[static_cast<size_t>(material_of(first))];
-    if (scene_.plan.live(Effect::Bump)) apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
+    if (scene_.plan.live(Effect::Bump)) {
+      apply_bump(material.bump, static_cast<float>(scene_.space.scale), run.points);
+      if (material.has_normal_map()) apply_normal_map(material.normalmap, material.normalscale, run.points);
+    }
     material.lobes(run.points, run.lobes);
     run.lobes.keep(scene_.plan.lobes());
     for (int l = 0; l < run.lobes.count; ++l) {

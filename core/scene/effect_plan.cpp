@@ -139,12 +139,17 @@ class Planner {
     visit_material(index, shape);
     if (material.plugin && material.plugin->scatters_below() && !body_) body_ = m == 0 ? shape : material.where;
     // Normals of a surface without lobes are never asked for.
-    if (!material.plugin || material.plugin->bump.is_constant() || material.plugin->effects().empty()) return;
-    call_for({Effect::Bump}, m == 0 ? shape : material.where, "bumpmap");
-    if (!is_off(Effect::Bump)) visit_bump(m, material.plugin->bump.texture().get());
+    if (!material.plugin || material.plugin->effects().empty()) return;
+    const SourcePos where = m == 0 ? shape : material.where;
+    const auto tilts = [&](const Plugin* map, const char* what) {
+      call_for({Effect::Bump}, where, what);
+      if (map && !is_off(Effect::Bump)) visit_bump(m, map);
+    };
+    if (!material.plugin->bump.is_constant()) tilts(material.plugin->bump.texture().get(), "bumpmap");
+    if (material.plugin->has_normal_map()) tilts(material.plugin->normalmap.texture().get(), "normalmap");
   }
 
-  /// The bump map of a worn material, which a mix has of its first member: that of no other member is seen.
+  /// A bump or normal map of a worn material, which a mix has of its first member: that of no other member is seen.
   void visit_bump(size_t m, const Plugin* map) {
     const auto& material = scene_.materials[m];
     for (const TextureUse& t : material.textures) {
@@ -168,7 +173,7 @@ class Planner {
                                                                  : "a material with overrides";
     call_for(material.plugin->effects(), where, what);
     for (const TextureUse& t : material.textures) {
-      if (t.parameter != "bumpmap") visit_texture(t.texture, true);
+      if (t.parameter != "bumpmap" && t.parameter != "normalmap") visit_texture(t.texture, true);
     }
     for (const int member : material.materials) visit_material(member, shape);
   }

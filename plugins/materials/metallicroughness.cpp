@@ -291,7 +291,9 @@ const Register<MetallicRoughness> metallicroughness{
           "Angle of that direction, counter-clockwise from the tangent towards the bitangent, dpdv."),
     param(&MetallicRoughness::opacity, "opacity", 1.0f, Unit::None,
           "Share of all this; the rest of a ray passes straight on.", kUnit),
-    bumpmap_param()};
+    bumpmap_param(),
+    normalmap_param(),
+    normalscale_param()};
 
 }  // namespace
 }  // namespace whit

@@ -1,5 +1,5 @@
-// A blend of two named materials: the lobes of both, weighted. As in pbrt-v3 the first one gives the bump map and
-// the index of refraction for ray differentials; mixes may be mixed.
+// A blend of two named materials: the lobes of both, weighted. As in pbrt-v3 the first one gives the bump map,
+// here the normal map too, and the index of refraction for ray differentials; mixes may be mixed.
 #include <memory>
 
 #include "core/plugin/registry.h"
@@ -15,7 +15,9 @@ struct Mix : Material {
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (!namedmaterial1) diagnostics.error(statement, "mix needs the name of a material as \"namedmaterial1\"");
     if (!namedmaterial2) diagnostics.error(statement, "mix needs the name of a material as \"namedmaterial2\"");
-    if (namedmaterial1) bump = namedmaterial1->bump;
+    if (!namedmaterial1) return;
+    bump = namedmaterial1->bump;
+    normalmap = namedmaterial1->normalmap, normalscale = namedmaterial1->normalscale;
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

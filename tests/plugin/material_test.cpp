@@ -361,6 +361,11 @@ TEST(Mix, TakesTheFirstBumpMap) {
       make_mix(named, {test::text("namedmaterial1", "flat"), test::text("namedmaterial2", "rough")}, diagnostics);
   EXPECT_FALSE(first->bump.is_constant());
   EXPECT_TRUE(second->bump.is_constant());
+  named["rough"]->normalmap = Tex<RGB>(RGB(0.6f, 0.5f, 1));
+  const auto tilted =
+      make_mix(named, {test::text("namedmaterial1", "rough"), test::text("namedmaterial2", "flat")}, diagnostics);
+  EXPECT_TRUE(tilted->has_normal_map());
+  EXPECT_FALSE(second->has_normal_map());
 }
 
 TEST(None, IsAnInterfaceUnderBothNames) {

@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
 #include "core/image/texture_store.h"
 #include "core/image/write.h"
 #include "core/plugin/bump.h"
+#include "core/plugin/material.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/texture_mapping.h"
 #include "tests/base/temp_folder.h"
@@ -358,6 +360,67 @@ TEST(Bump, RaisesACurvedSurfaceByItsDisplacement) {
   apply_bump(Tex<float>(std::make_shared<Flat>()), 1, points.s);
   EXPECT_NEAR(points.s.dpdu.x[0], 1.25, 1e-6);
   EXPECT_EQ(points.s.ns[0], Vec3f(0, 0, 1));
+}
+
+/// A colour that is the same everywhere, but does not say so.
+struct Everywhere : Texture<RGB> {
+  explicit Everywhere(RGB c) : colour(c) {}
+  void evaluate(const ShadingBatch& s, const RGBLanes& out) const override {
+    for (int i = 0; i < s.n; ++i) out.set(i, colour);
+  }
+  RGB colour;
+};
+
+/// The points under a normal map of one colour.
+void map_normals(RGB colour, float scale, ShadingPoints& points) {
+  apply_normal_map(Tex<RGB>(std::make_shared<Everywhere>(colour)), scale, points.s);
+}
+
+TEST(NormalMap, IsAVectorAroundTangentBitangentAndNormal) {
+  // 2 (0.8, 0.3, 0.9) - 1 = (0.6, -0.4, 0.8), along a tangent of any length and a bitangent that is on the other side.
+  for (const float side : {1.0f, -1.0f}) {
+    ShadingPoints points(1);
+    points.s.dpdu.set(0, {0, 3, 0}), points.s.dpdv.set(0, {-0.1f * side, 0, 0});
+    map_normals({0.8f, 0.3f, 0.9f}, 1, points);
+    EXPECT_NEAR(length(points.s.ns[0] - normalize(Vec3f(0.4f * side, 0.6f, 0.8f))), 0, 1e-6);
+    EXPECT_NEAR(dot(points.s.ns[0], points.s.dpdu[0]), 0, 1e-6);
+    EXPECT_NEAR(dot(points.s.ns[0], points.s.dpdv[0]), 0, 1e-6);
+  }
+}
+
+TEST(NormalMap, ScaleIsThatOfTheFirstTwoComponents) {
+  ShadingPoints points(1);
+  map_normals({1, 0.5f, 1}, 0.5f, points);
+  EXPECT_NEAR(length(points.s.ns[0] - normalize(Vec3f(0.5f, 0, 1))), 0, 1e-6);
+}
+
+TEST(NormalMap, FlatColourChangesNothing) {
+  ShadingPoints points(64), before(64);
+  points.randomise(3), before.randomise(3);
+  map_normals(Material::kFlatNormal, 1, points);
+  for (int i = 0; i < points.s.n; ++i) EXPECT_NEAR(length(points.s.ns[i] - before.s.ns[i]), 0, 2e-6);
+}
+
+TEST(NormalMap, StaysAboveTheSurface) {
+  // (1, 0, -0.6) would be seen from below; it is lifted until its cosine is 0.001 of the geometric normal.
+  ShadingPoints points(1);
+  map_normals({1, 0.5f, 0.2f}, 1, points);
+  EXPECT_NEAR(length(points.s.ns[0] - Vec3f(1, 0, 1e-3f * std::sqrt(1 + 0.36f))), 0, 1e-3);
+  EXPECT_GT(points.s.ns.z[0], 0);
+  points.set_flat(0, 0, 0);
+  points.s.ng.set(0, {0, 0, -1}), points.s.ns.set(0, {0, 0, -1});
+  map_normals({1, 0.5f, 0.2f}, 1, points);
+  EXPECT_LT(points.s.ns.z[0], 0);
+}
+
+TEST(NormalMap, WithoutTangentsOrNumbersTheNormalStays) {
+  ShadingPoints points(2);
+  points.s.dpdu.set(0, {0, 0, 0}), points.s.dpdv.set(0, {0, 0, 0});
+  map_normals({1, 0.5f, 1}, 1, points);
+  EXPECT_EQ(points.s.ns[0], Vec3f(0, 0, 1));
+  points.set_flat(1, 0, 0);
+  map_normals(RGB(std::numeric_limits<float>::quiet_NaN()), 1, points);
+  EXPECT_EQ(points.s.ns[1], Vec3f(0, 0, 1));
 }
 
 TEST(Bump, StaysOnTheSideOfTheGeometricNormal) {

@@ -38,6 +38,8 @@ std::vector<Pair> pairs() {
       {Effect::TextureFiltering, kChecks + "Material \"matte\" \"texture Kd\" \"c\"",
        kChecks.substr(0, kChecks.size() - 1) + " \"string aamode\" \"none\" Material \"matte\" \"texture Kd\" \"c\""},
       {Effect::Bump, kBumps + "Material \"matte\" \"texture bumpmap\" \"b\"", ""},
+      {Effect::Bump, "Material \"metallicroughness\" \"rgb normalmap\" [0.7 0.4 0.9]",
+       "Material \"metallicroughness\""},
       {Effect::Alpha, kMask + kMesh + "\"texture alpha\" \"a\"", kMesh},
       // The shutter opens a quarter of the way.
       {Effect::MotionBlur, "AttributeBegin " + kMove + kMesh + " AttributeEnd",

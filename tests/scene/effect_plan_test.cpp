@@ -220,6 +220,11 @@ TEST(EffectPlan, TexturesOfLobesThatAreAbsentAreNotLive) {
         "\"disney\" \"texture clearcoatgloss\" \"t\" \"texture flatness\" \"t\" \"texture difftrans\" \"t\"",
         "\"disney\" \"float metallic\" 1 \"texture sheen\" \"t\" \"texture sheentint\" \"t\"",
         "\"matte\" \"rgb Kd\" [0 0 0] \"texture bumpmap\" \"t\"",
+        "\"metallicroughness\" \"texture specular\" \"t\" \"float metallic\" 1 \"texture transmission\" \"t\"",
+        "\"metallicroughness\" \"texture clearcoatroughness\" \"t\" \"texture sheenroughness\" \"t\"",
+        "\"metallicroughness\" \"float opacity\" 0 \"texture basecolor\" \"c\" \"texture roughness\" \"t\"",
+        "\"metallicroughness\" \"float metallic\" 0 \"float specular\" 0 \"texture roughness\" \"t\" \"texture "
+        "specularcolor\" \"c\" \"texture anisotropyrotation\" \"t\"",
         "\"hair\" \"rgb sigma_a\" [1 1 1] \"texture color\" \"c\" \"texture eumelanin\" \"t\""}) {
     const Planned planned(scene("Texture \"t\" \"float\" \"windy\" Texture \"c\" \"spectrum\" \"windy\" Material " +
                                 std::string(material) + " Shape \"disk\""),
@@ -253,6 +258,41 @@ TEST(EffectPlan, AMixHasTheBumpMapOfItsFirstMember) {
     return Planned(scene(R"(Texture "waves" "float" "windy"
         MakeNamedMaterial "flat" "string type" "matte"
         MakeNamedMaterial "rough" "string type" "matte" "texture bumpmap" "waves"
+        Material "mix" )" +
+                         order + " Shape \"disk\""))
+        .plan;
+  };
+  const EffectPlan flat = plan(R"("string namedmaterial1" "flat" "string namedmaterial2" "rough")");
+  EXPECT_FALSE(flat.called_for.has(Effect::Bump));
+  EXPECT_EQ(flat.texture_live, std::vector<uint8_t>{0});
+  const EffectPlan rough = plan(R"("string namedmaterial1" "rough" "string namedmaterial2" "flat")");
+  EXPECT_TRUE(rough.live(Effect::Bump));
+  EXPECT_EQ(rough.texture_live, std::vector<uint8_t>{3});
+}
+
+TEST(EffectPlan, ANormalMapIsABumpMap) {
+  const std::string maps = "Texture \"n\" \"spectrum\" \"windy\" Material \"metallicroughness\" ";
+  const auto plan = [&](const std::string& parameters) {
+    return Planned(scene(maps + parameters + " Shape \"disk\"")).plan;
+  };
+  const EffectPlan mapped = plan("\"texture normalmap\" \"n\"");
+  EXPECT_TRUE(mapped.live(Effect::Bump));
+  EXPECT_TRUE(mapped.needs_differentials());
+  EXPECT_EQ(mapped.texture_live, std::vector<uint8_t>{3});
+  EXPECT_TRUE(plan("\"rgb normalmap\" [0.6 0.5 1]").live(Effect::Bump)) << "tilted everywhere";
+  EXPECT_FALSE(plan("\"rgb normalmap\" [0.5 0.5 1]").called_for.has(Effect::Bump));
+  PlanOptions flat;
+  flat.off = {Effect::Bump};
+  const Planned off(scene(maps + "\"texture normalmap\" \"n\" Shape \"disk\""), Planned::Warnings::Failures, flat);
+  EXPECT_FALSE(off.plan.live(Effect::Bump));
+  EXPECT_EQ(off.plan.texture_live, std::vector<uint8_t>{0});
+}
+
+TEST(EffectPlan, AMixHasTheNormalMapOfItsFirstMember) {
+  const auto plan = [](const std::string& order) {
+    return Planned(scene(R"(Texture "waves" "spectrum" "windy"
+        MakeNamedMaterial "flat" "string type" "matte"
+        MakeNamedMaterial "rough" "string type" "metallicroughness" "texture normalmap" "waves"
         Material "mix" )" +
                          order + " Shape \"disk\""))
         .plan;
