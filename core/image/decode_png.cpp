@@ -63,15 +63,17 @@ class Unpacker {
       palette_[4 * i + 3] = stream.palette_alpha[i];
     }
     of_colour_ = stream.has_palette_alpha ? 4 : 3;
+    clear_ = stream.clear;
     // Numbers of few bits stand for the same range as those of eight.
     const int most = (1 << std::min(header_.bits, 8)) - 1;
     for (int i = 0; i <= most; ++i) grey_[i] = static_cast<uint8_t>(i * 255 / most);
   }
 
-  bool needed() const { return header_.bits < 8 || header_.colour == PngHeader::Palette; }
+  bool needed() const { return header_.bits < 8 || header_.colour == PngHeader::Palette || !clear_.empty(); }
 
   void unpack(const uint8_t* from, int pixels, uint8_t* to) const {
     const int bits = header_.bits;
+    if (!clear_.empty()) return unpack_with_clear(from, pixels, to);
     if (bits > 8 || !needed()) {
       std::memcpy(to, from, header_.row_bytes(pixels));
       return;
@@ -85,7 +87,26 @@ class Unpacker {
   }
 
  private:
+  // Numbers, and alpha that is 0 where they are those of the transparent colour.
+  void unpack_with_clear(const uint8_t* from, int pixels, uint8_t* to) const {
+    const int bits = header_.bits, numbers = header_.numbers(), bytes = bits / 8;
+    for (int x = 0; x < pixels; ++x) {
+      bool is_clear = true;
+      for (int c = 0; c < numbers; ++c) {
+        const int bit = x * bits;
+        const int v = bytes == 0   ? from[bit >> 3] >> (8 - bits - (bit & 7)) & ((1 << bits) - 1)
+                      : bytes == 1 ? from[numbers * x + c]
+                                   : from[2 * (numbers * x + c)] << 8 | from[2 * (numbers * x + c) + 1];
+        if (bytes == 0) *to++ = grey_[v];
+        else to = std::copy_n(from + bytes * (numbers * x + c), bytes, to);
+        is_clear = is_clear && v == clear_[static_cast<size_t>(c)];
+      }
+      to = std::fill_n(to, std::max(1, bytes), static_cast<uint8_t>(is_clear ? 0 : 255));
+    }
+  }
+
   const PngHeader& header_;
+  std::vector<int> clear_;
   std::array<uint8_t, 4 * 256> palette_;
   int of_colour_ = 3;  // numbers of a colour of the palette
   std::array<uint8_t, 256> grey_{};
@@ -126,7 +147,7 @@ class PngRows : public PictureRows {
     std::vector<std::string> channels{"R", "G", "B"};
     if (h.colour == PngHeader::Grey) channels = {"Y"};
     if (h.colour == PngHeader::GreyAlpha) channels = {"Y", "A"};
-    if (h.colour == PngHeader::RgbAlpha || stream_.has_palette_alpha) channels.push_back("A");
+    if (h.colour == PngHeader::RgbAlpha || stream_.has_palette_alpha || !stream_.clear.empty()) channels.push_back("A");
     set_header(info, h.width, h.height, wide() ? SampleFormat::UInt16 : SampleFormat::UInt8, std::move(channels));
   }
 

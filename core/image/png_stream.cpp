@@ -127,6 +127,10 @@ void PngStream::find_pixels() {
       const std::vector<uint8_t> colours = small_chunk(chunk, palette.size());
       std::copy(colours.begin(), colours.end(), palette.begin());
       has_palette = true;
+    } else if (is(chunk.type, "tRNS") && (header.colour == PngHeader::Grey || header.colour == PngHeader::Rgb)) {
+      const std::vector<uint8_t> numbers = small_chunk(chunk, 2 * 3);
+      if (numbers.size() != 2 * static_cast<size_t>(header.numbers())) fail("its transparent colour is not one");
+      for (size_t i = 0; i < numbers.size(); i += 2) clear.push_back(numbers[i] << 8 | numbers[i + 1]);
     } else if (is(chunk.type, "tRNS") && header.colour == PngHeader::Palette) {
       const std::vector<uint8_t> alphas = small_chunk(chunk, palette_alpha.size());
       palette_alpha.fill(255);

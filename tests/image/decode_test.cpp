@@ -155,6 +155,31 @@ TEST(DecodePng, a_palette_may_have_alpha) {
   }
 }
 
+TEST(DecodePng, one_colour_may_be_transparent) {
+  for (const auto& [bits, type] : {std::pair{2, 0}, {8, 0}, {16, 0}, {8, 2}, {16, 2}}) {
+    const PngPicture p = random_png(9, 4, bits, type);
+    const size_t n = static_cast<size_t>(p.per_pixel()), pixel = 7;
+    std::string key;
+    for (size_t c = 0; c < n; ++c) {
+      const int v = p.numbers[n * pixel + c];
+      key += static_cast<char>(v >> 8), key += static_cast<char>(v & 255);
+    }
+    std::string file = png_file(p, false);
+    file.insert(file.find("IDAT") - 4, chunk("tRNS", key));
+    const auto rows = open_png(write_temp("transparent.png", file));
+    ASSERT_EQ(rows->info.alpha_channel(), static_cast<int>(n));
+    const std::vector<float> numbers = numbers_of(*rows), colours = expected_of(p);
+    for (size_t i = 0; i < colours.size() / n; ++i) {
+      bool same = true;
+      for (size_t c = 0; c < n; ++c) {
+        ASSERT_EQ(numbers[(n + 1) * i + c], colours[n * i + c]) << bits << ' ' << type;
+        same = same && colours[n * i + c] == colours[n * pixel + c];
+      }
+      ASSERT_EQ(numbers[(n + 1) * i + n], same ? 0 : bits == 16 ? 1 : 255);
+    }
+  }
+}
+
 TEST(DecodePng, every_kind_by_every_filter_in_order_and_interlaced) {
   for (const auto& kind : kPngKinds) {
     if (kind.type == 3 && kind.bits == 1) continue;  // three colours

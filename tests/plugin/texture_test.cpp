@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 #include <limits>
 
 #include "core/image/texture_store.h"
@@ -266,6 +267,51 @@ TEST(Textures, ImagemapIsReadWhenARayMeetsIt) {
   EXPECT_EQ(store.statistics().decodes, 1);
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(v[i], 10 * (i + 1), 1e-3) << i;
   EXPECT_TRUE(map->effects().has(Effect::TextureFiltering));
+}
+
+TEST(ImageMap, TakesAPictureThatIsAttached) {
+  // The bytes of a file, as a model holds them, in place of a name: the same values.
+  const std::string path = test::temp_folder() + "/attached.png";
+  const std::vector<float> rgb{0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f, 0.7f, 0.8f, 0.9f, 1, 0, 0.5f};
+  OutputImage image;
+  image.width = image.height = 2, image.rgb = rgb;
+  ASSERT_EQ(write_image(path, image).error, "");
+  std::ifstream file(path, std::ios::binary);
+  const std::string all(std::istreambuf_iterator<char>(file), {});
+  const auto make = [&](std::shared_ptr<const PictureBytes> bytes, ParameterList parameters, Diagnostics& said) {
+    const PluginInfo* info = find_plugin("float texture", "imagemap");
+    std::shared_ptr<Plugin> plugin(info->make());
+    plugin->attach(bytes);
+    BindContext ctx;
+    ctx.diagnostics = &said;
+    EXPECT_TRUE(bind_parameters(*info, *plugin, parameters, ctx));
+    plugin->check(said, {});
+    return std::dynamic_pointer_cast<Texture<float>>(plugin);
+  };
+  const auto in_memory = [&](size_t size) {
+    auto bytes = std::make_shared<PictureBytes>();
+    bytes->name = "model.glb: /images/0";
+    bytes->bytes = {reinterpret_cast<const uint8_t*>(all.data()), size};
+    return bytes;
+  };
+  TextureStore store;
+  PrepareContext ctx;
+  ctx.textures = &store;
+  Diagnostics said;
+  ctx.diagnostics = &said;
+  auto attached =
+      prepared(after_reading(make(in_memory(all.size()), {string_choice("channel", "green")}, said), said, {}), ctx);
+  EXPECT_FALSE(make_plugin<Texture<float>>("float texture", "imagemap").good());
+  ASSERT_TRUE(attached);
+  EXPECT_TRUE(said.all().empty());
+  ShadingPoints points(1, false);
+  points.set_flat(0, 0.25f, 0.75f);
+  // Green of the upper left pixel: ((0.2 + 0.055) / 1.055)^2.4, for png is sRGB.
+  EXPECT_NEAR(values(*attached, points.s)[0], 0.0331048f, 1e-6f);
+  // Not a picture: an error that says whose.
+  EXPECT_FALSE(after_reading(make(in_memory(10), {}, said), said, {}));
+  ASSERT_EQ(said.all().size(), 1u);
+  EXPECT_NE(said.all()[0].message.find("model.glb: /images/0"), std::string::npos);
 }
 
 TEST(Threshold, IsOneFromTheEdgeOn) {
