@@ -31,19 +31,17 @@ std::string Buffers::view(int view, std::span<const uint8_t>& out) const {
     out = plain_view(view).bytes;
     return {};
   }
-  const std::lock_guard lock(mutex_);
-  decoded_.resize(views.size());
-  std::shared_ptr<const std::vector<uint8_t>>& decoded = decoded_[static_cast<size_t>(view)];
-  if (!decoded) {
+  Decoded& decoded = decoded_[static_cast<size_t>(view)];
+  std::call_once(decoded.once, [&] {
     const Compression& c = *v.compression;
-    auto fresh = std::make_shared<std::vector<uint8_t>>();
-    const std::string error =
-        decompress(c, buffers[static_cast<size_t>(c.buffer)].bytes.subspan(c.offset, c.length), *fresh);
-    if (!error.empty()) return fmt::format("/bufferViews/{}/extensions/EXT_meshopt_compression: {}", view, error);
-    decoded = std::move(fresh);
-  }
-  out = *decoded;
-  return {};
+    const std::span<const uint8_t> source = buffers[static_cast<size_t>(c.buffer)].bytes;
+    const std::string error = decompress(c, source.subspan(c.offset, c.length), decoded.bytes);
+    if (!error.empty()) {
+      decoded.error = fmt::format("/bufferViews/{}/extensions/EXT_meshopt_compression: {}", view, error);
+    }
+  });
+  out = decoded.bytes;
+  return decoded.error;
 }
 
 std::optional<std::vector<uint8_t>> decode_base64(std::string_view text) {

@@ -73,14 +73,21 @@ class Buffers {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
 
+  /// Makes room for what is decompressed; when all views are there.
+  void prepare() { decoded_ = std::make_unique<Decoded[]>(views.size()); }
   /// The bytes of a view, decompressed when asked for the first time. Returns "", or what is wrong. Thread-safe.
   std::string view(int view, std::span<const uint8_t>& out) const;
   /// The same with what keeps them.
   Bytes plain_view(int view) const;
 
  private:
-  mutable std::mutex mutex_;
-  mutable std::vector<std::shared_ptr<const std::vector<uint8_t>>> decoded_;  ///< Of compressed views.
+  /// Of a compressed view.
+  struct Decoded {
+    std::once_flag once;
+    std::string error;
+    std::vector<uint8_t> bytes;
+  };
+  std::unique_ptr<Decoded[]> decoded_;
 };
 
 /// What is wrong with the indices of sparse elements, or "": they must increase and name elements.

@@ -66,6 +66,8 @@ struct Bounds {
 };
 inline constexpr Bounds kAnyNumber{}, kFraction{0, 1}, kNotNegative{0},
     kPositive{0, std::numeric_limits<double>::max(), true};
+/// What a float holds: a strength times a colour, too.
+inline constexpr Bounds kCoordinate{-1e30, 1e30}, kBright{0, 1e30}, kColorFactor{0, 1e6};
 
 /// A value of the document and the way to it. Its functions report what is wrong and return what can be used anyway. Where
 /// a whole number is wanted and the file writes 3.0, it becomes 3.
@@ -105,7 +107,7 @@ class Item {
   std::vector<int> indices(const char* key, Things things, Need need = Need::Optional) const;
   /// As many numbers as one of the sizes says; else, or when the member is not there, none.
   std::vector<double> numbers(const char* key, size_t size, Bounds bounds = {}) const;
-  std::vector<double> any_numbers(const char* key) const;
+  std::vector<double> any_numbers(const char* key, Bounds bounds) const;
   std::optional<std::string> text(const char* key, Need need = Need::Optional) const;
   /// The place of the member's text in the choices, or -1.
   int choice(const char* key, const std::vector<const char*>& choices, Need need = Need::Optional) const;

@@ -34,10 +34,8 @@ void check_camera(const Item& camera) {
 }
 
 void check_light(const Item& light) {
-  // What a float holds, with room for products.
-  constexpr Bounds kBright{0, 1e30};
   const int type = light.choice("type", std::vector<const char*>{"directional", "point", "spot"}, Need::Required);
-  light.numbers("color", 3, kBright);
+  light.numbers("color", 3, kColorFactor);
   light.number("intensity", kBright);
   light.number("range", kPositive);
   if (type == 2 && !light.has("spot")) light.error_at("spot", "is missing");

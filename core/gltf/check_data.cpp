@@ -36,6 +36,7 @@ class DataReader {
     out_.accessors.resize(count_of(root_, "accessors"));
     root_.objects("buffers", [&](const Item& item, size_t i) { read_buffer(item, i); });
     root_.objects("bufferViews", [&](const Item& item, size_t i) { read_view(item, out_.views[i]); });
+    out_.prepare();
     root_.objects("accessors", [&](const Item& item, size_t i) { read_accessor(item, out_.accessors[i]); });
   }
 

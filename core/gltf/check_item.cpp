@@ -221,9 +221,9 @@ std::vector<double> Item::numbers(const char* key, size_t size, Bounds bounds) c
   return out;
 }
 
-std::vector<double> Item::any_numbers(const char* key) const {
+std::vector<double> Item::any_numbers(const char* key, Bounds bounds) const {
   std::vector<double> out;
-  elements(key, [&](const Item& element, size_t) { out.push_back(element.as_number({}).value_or(0)); });
+  elements(key, [&](const Item& element, size_t) { out.push_back(element.as_number(bounds).value_or(0)); });
   return out;
 }
 

@@ -10,9 +10,6 @@ namespace {
 
 using Need = Item::Need;
 
-/// Colours and strengths that a float holds, with room for products.
-constexpr Bounds kBright{0, 1e30}, kCoordinate{-1e30, 1e30};
-
 class MaterialCheck {
  public:
   explicit MaterialCheck(const CheckContext& c) : c_(c) {}
@@ -26,7 +23,7 @@ class MaterialCheck {
     material.object("normalTexture", [](const Item& info) { info.number("scale", kCoordinate); });
     material.object("occlusionTexture", [this](const Item& info) { fraction(info, "strength"); });
     for (const char* key : {"normalTexture", "occlusionTexture", "emissiveTexture"}) texture(material, key);
-    material.numbers("emissiveFactor", 3, kBright);
+    material.numbers("emissiveFactor", 3, kColorFactor);
     material.choice("alphaMode", std::vector<const char*>{"OPAQUE", "MASK", "BLEND"});
     material.number("alphaCutoff", kBright);
     material.boolean("doubleSided");

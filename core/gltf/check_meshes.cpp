@@ -14,7 +14,7 @@ class MeshCheck {
   void check(const Item& mesh) {
     if (!mesh.has("primitives")) mesh.error_at("primitives", "is missing");
     mesh.objects("primitives", [&](const Item& primitive, size_t i) { check_primitive(primitive, i); });
-    const std::vector<double> weights = mesh.any_numbers("weights");
+    const std::vector<double> weights = mesh.any_numbers("weights", kCoordinate);
     if (mesh.has("weights") && weights.size() != targets_) {
       mesh.error_at("weights", fmt::format("has {} numbers for {} morph targets", weights.size(), targets_));
     }

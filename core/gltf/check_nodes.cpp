@@ -38,7 +38,7 @@ class NodeCheck {
     node.index("camera", c_.counts.cameras);
     node.index("skin", c_.counts.skins);
     check_place(node);
-    const size_t weights = node.any_numbers("weights").size();
+    const size_t weights = node.any_numbers("weights", kCoordinate).size();
     const size_t targets = mesh < 0 ? 0 : c_.mesh_targets[static_cast<size_t>(mesh)];
     if (node.has("weights") && weights != targets)
       node.error_at("weights", fmt::format("has {} numbers for {} morph targets", weights, targets));
@@ -57,7 +57,7 @@ class NodeCheck {
   }
 
   void check_place(const Item& node) {
-    const std::vector<double> matrix = node.numbers("matrix", 16);
+    const std::vector<double> matrix = node.numbers("matrix", 16, kCoordinate);
     const bool also = node.has("translation") || node.has("rotation") || node.has("scale");
     if (node.has("matrix") && also)
       node.problems().excused(node.place("matrix"), "is there beside translation, rotation or scale",
@@ -68,7 +68,7 @@ class NodeCheck {
       node.error_at("matrix", "is not that of a rotation, a scale and a translation: its last row is not 0 0 0 1");
       break;
     }
-    node.numbers("translation", 3), node.numbers("scale", 3);
+    node.numbers("translation", 3, kCoordinate), node.numbers("scale", 3, kCoordinate);
     const std::vector<double> q = node.numbers("rotation", 4);
     if (!q.empty() && std::all_of(q.begin(), q.end(), [](double x) { return x == 0; }))
       node.error_at("rotation", "is the quaternion 0, which is no rotation");
