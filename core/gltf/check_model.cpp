@@ -5,7 +5,8 @@
 namespace whit::gltf {
 namespace {
 
-/// Every "extensions" is an object of objects, and every "name" is text. What is under "extras" is nobody's business.
+/// Every "extensions" is an object of objects, and every "name" is text. What is in extras and extensions is
+/// looked at where it is read.
 void check_everywhere(const Item& item) {
   if (item.value().is_array()) {
     for (size_t i = 0; i < item.value().size(); ++i) check_everywhere(Item(item, i, item.value()[i]));
@@ -14,8 +15,9 @@ void check_everywhere(const Item& item) {
   item.members([](const Item& member, const std::string& key) {
     if (key == "extras") return;
     if (key == "name" && !member.value().is_string()) return member.error("must be a string");
-    if (key == "extensions" && member.is_object()) {
-      member.members([](const Item& extension, const std::string&) { extension.is_object(); });
+    if (key == "extensions") {
+      if (member.is_object()) member.members([](const Item& extension, const std::string&) { extension.is_object(); });
+      return;
     }
     if (member.value().is_structured()) check_everywhere(member);
   });
