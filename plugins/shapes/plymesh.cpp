@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "core/base/mapped_file.h"
 #include "core/base/ply.h"
+#include "core/plugin/mapped_file.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 

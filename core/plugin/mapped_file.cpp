@@ -1,4 +1,4 @@
-#include "core/base/mapped_file.h"
+#include "core/plugin/mapped_file.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
