@@ -73,6 +73,28 @@ class Furnace(unittest.TestCase):
             self.assertGreaterEqual(float(pixels.mean()), 0.9999)
             self.assertLessEqual(float(pixels.max()), 1 + 1e-5)
 
+    def test_smooth_white_models_cannot_be_seen(self):
+        # By Schlick's approximation as by Fresnel's equations, what is not reflected goes through. At the edge of a ball most is
+        # reflected, again and again.
+        for parameters in ('"float metallic" 1', '"float metallic" 0 "float transmission" 1',
+                           '"float metallic" 0 "float transmission" 1 "float ior" 1.2 "float clearcoat" 1',
+                           '"float metallic" 0 "float transmission" 1 "bool thin" "false"', '"float opacity" 0'):
+            with self.subTest(parameters=parameters):
+                pixels = self.render('Material "metallicroughness" "float roughness" 0 %s Shape "sphere"' % parameters,
+                                     fov=32, size=64, maxdepth=60)
+                self.assertGreaterEqual(float(pixels.mean()), 0.9999)
+                self.assertLessEqual(float(pixels.max()), 1 + 1e-5)
+
+    def test_rough_white_models_cannot_be_seen(self):
+        # All that facets leave is scattered by the body, within 0.002. Lights are sampled, then the lobes: the sky's directions
+        # are uniform over the sphere at worst, and a lobe of alpha 0.49 and more is not far from even.
+        for parameters in ('"float roughness" 0.7', '"float roughness" 1', '"float roughness" 1 "rgb sheencolor" [1 1 1] '
+                           '"float sheenroughness" 0.6', '"float roughness" 1 "float clearcoat" 1 "float clearcoatroughness" 0.8'):
+            with self.subTest(parameters=parameters):
+                pixels = self.render('Material "metallicroughness" "float metallic" 0 %s Shape "disk" "float radius" 3'
+                                     % parameters, spp=256)
+                self.assertLess(abs(float(pixels.mean()) - 1), 5 * math.sqrt(5 / 3 / 256 / 1024) + 0.003)
+
     def test_a_black_lobe_removes_that_lobe_only(self):
         # Seen along its axis a ball of index 1.5 reflects R = (0.5 / 2.5)^2 = 0.04 at each boundary. Kr = 0: what is left
         # passes both boundaries, (1 - R)^2 = 0.9216, nothing between them. Kt = 0: the first reflection, R. Fov 0.01: the
