@@ -115,8 +115,9 @@ ShadingBatch allocate(const SurfaceHits& h, bool bumps, const MeshAttributes& at
 
 ShadingBatch compute_surfaces(const Scene& scene, const SurfaceHits& h, Arena& arena) {
   const ShadingBatch s = allocate(h, scene.plan.live(Effect::Bump), scene.attributes, arena);
-  // Footprints alone need those of the geometry, and instances turn what there is: else there is no telling them apart.
-  const bool apart = h.has_differentials() || scene.has_instances;
+  // Footprints need those of the geometry, instances turn what there is, and so do normal maps, which also ask where the
+  // texture coordinates go: else there is no telling them apart.
+  const bool apart = h.has_differentials() || scene.has_instances || scene.plan.live(Effect::Bump);
   const GeometricPartials g =
       apart ? GeometricPartials{arena.vec3(h.n), arena.vec3(h.n)} : GeometricPartials{s.dpdu, s.dpdv};
   const auto shape_of = [&](int i) -> const SceneShape& { return scene.shapes[static_cast<size_t>(h.shape[i])]; };

@@ -170,17 +170,26 @@ void triangle_shading(const TriangleLanes& t, const ShadingBatch& s, const float
 }
 
 /// Of meshes that say where their bitangents point: dpdu goes along the tangent, and dpdv to that side of it. For others
-/// triangle_shading() has turned both around the normal by 180 degrees, as pbrt: cross(cross(s, n), n) is -s.
-void turn_bitangents(const Scene& scene, const SurfaceHits& h, int first, const ShadingBatch& s, const float* bary_u,
-                     const float* bary_v) {
+/// triangle_shading() has turned both around the normal by 180 degrees, as pbrt: cross(cross(s, n), n) is -s. A normal map
+/// would be turned with them, so where there is one they go where the tangents say, or the texture coordinates.
+void turn_tangents(const Scene& scene, const SurfaceHits& h, int first, bool normal_map, const ShadingBatch& s,
+                   const GeometricPartials& g, const float* bary_u, const float* bary_v) {
   for (int i = 0; i < s.n; ++i) {
     const Mesh& mesh = *scene.shapes[static_cast<size_t>(h.shape[first + i])].mesh;
-    if (mesh.bitangent_signs.empty()) continue;
-    const uint32_t* const index = mesh.corners(h.prim[first + i]);
-    const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
-    const float* const sign = mesh.bitangent_signs.data();
+    if (mesh.normals.empty() && mesh.tangents.empty()) continue;
+    float side = 1;
+    if (!mesh.bitangent_signs.empty()) {
+      const uint32_t* const index = mesh.corners(h.prim[first + i]);
+      const float b1 = bary_u[i], b2 = bary_v[i], b0 = 1 - b1 - b2;
+      const float* const sign = mesh.bitangent_signs.data();
+      side = b0 * sign[index[0]] + b1 * sign[index[1]] + b2 * sign[index[2]];
+    } else if (!normal_map) {
+      continue;
+    } else if (mesh.tangents.empty()) {
+      side = -dot(s.dpdv[i], g.dpdv[i]);
+    }
     s.dpdu.set(i, -s.dpdu[i]);
-    if (!(b0 * sign[index[0]] + b1 * sign[index[1]] + b2 * sign[index[2]] < 0)) s.dpdv.set(i, -s.dpdv[i]);
+    if (!(side < 0)) s.dpdv.set(i, -s.dpdv[i]);
   }
 }
 
@@ -275,10 +284,14 @@ void mesh_surfaces(const Scene& scene, const SurfaceHits& h, int first, const Sh
     exact_geometry(scene, h, first, t, s, g, exact_u, exact_v);
     bu = exact_u, bv = exact_v;
   }
+  // All of these points are of one material.
+  const int material = scene.shapes[static_cast<size_t>(h.shape[first])].material;
+  const bool normal_map =
+      scene.plan.live(Effect::Bump) && scene.materials[static_cast<size_t>(material)]->has_normal_map();
   if (t.any_normals && t.any_tangents) triangle_shading<true, true>(t, s, bu, bv);
   if (t.any_normals && !t.any_tangents) triangle_shading<true, false>(t, s, bu, bv);
   if (!t.any_normals && t.any_tangents) triangle_shading<false, true>(t, s, bu, bv);
-  if (t.any_signs) turn_bitangents(scene, h, first, s, bu, bv);
+  if (t.any_signs || normal_map) turn_tangents(scene, h, first, normal_map, s, g, bu, bv);
   if (s.dndu) triangle_normal_derivatives(t, s, bu, bv);
   if (s.u1 || s.color) mesh_attributes(scene, h, first, s, g, bu, bv);
 }

@@ -262,5 +262,35 @@ TEST(MeshAttributes, BitangentsAreOnTheSideOfTheirSign) {
   }
 }
 
+TEST(MeshAttributes, NormalMapsGoWhereTextureCoordinatesAndTangentsGo) {
+  // p = (u, v, 0): dpdu is x and dpdv is y, with given normals or without, where a normal map asks; elsewhere given normals
+  // turn both around, as in pbrt. Where v goes down, dpdv does. A tangent along -x has its bitangent cross(z, -x) = -y.
+  struct Case {
+    std::vector<std::string> properties;
+    const char* of_vertex;
+    double u, v;
+  };
+  const std::vector<std::string> uv{"u", "v"}, normals{"u", "v", "nx", "ny", "nz"},
+      tangents{"u", "v", "nx", "ny", "nz", "tx", "ty", "tz"};
+  for (const Case& c : {Case{uv, "{0} {1}", 1, 1},
+                        {normals, "{0} {1} 0 0 1", 1, 1},
+                        {normals, "{0} -{1} 0 0 1", 1, -1},
+                        {tangents, "{0} {1} 0 0 1 -1 0 0", -1, -1}}) {
+    const auto partials = [&](const char* material) {
+      const std::string mesh = square("normal_map", c.properties,
+                                      [&](int x, int y) { return fmt::format(fmt::runtime(c.of_vertex), x, y); });
+      const test::BuiltScene built(looked_at(std::string(material) + mesh));
+      const Hit hit(*built.scene, 0.4, 0.3);
+      return std::pair(hit.s.dpdu[0].normalized(), hit.s.dpdv[0].normalized());
+    };
+    const auto [u, v] = partials("Material \"metallicroughness\" \"rgb normalmap\" [0.6 0.5 1]\n");
+    EXPECT_NEAR((u - Vec3f(static_cast<float>(c.u), 0, 0)).length(), 0, 1e-6) << c.of_vertex;
+    EXPECT_NEAR((v - Vec3f(0, static_cast<float>(c.v), 0)).length(), 0, 1e-6) << c.of_vertex;
+    if (c.properties.size() == 2) continue;
+    const auto [as_pbrt, other] = partials("Material \"metallicroughness\"\n");
+    EXPECT_NEAR(as_pbrt.x, -c.u, 1e-6) << c.of_vertex;
+  }
+}
+
 }  // namespace
 }  // namespace whit
