@@ -49,7 +49,8 @@ void eval(const LobeQuery& q, const LobeValues& out) {
     const float alpha = charlie_alpha(roughness[i]), zi = std::abs(p.zi), zo = std::abs(p.zo);
     const float sin2 = min_of(across2(normalize(p.wo + p.wi), p.n), 1.0f);
     const float visible = charlie_visibility(zi, zo, charlie_lambda(zi, alpha), charlie_lambda(zo, alpha));
-    accumulate(out.f, i, q.lobe.weight, charlie_distribution(sin2, alpha) * visible * zi * p.reflects);
+    const float reflects = reflects_in_front(q, p, i);
+    accumulate(out.f, i, q.lobe.weight, charlie_distribution(sin2, alpha) * visible * zi * reflects);
     add_density(p.zo * p.zi > 0 ? 0.5f * kInvPi : 0.0f);
   });
 }

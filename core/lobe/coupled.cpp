@@ -15,7 +15,7 @@ void eval(const LobeQuery& q, const LobeValues& out) {
   for_pairs(q, out, [&](int i, const Pair& p, const auto& add_density) {
     const float z = std::abs(p.zi);
     const float enters = max_of(1 - albedo(z, position[i], f0[i], f90[i]), 0.0f);
-    accumulate(out.f, i, q.lobe.weight, kInvPi * enters * z * p.reflects);
+    accumulate(out.f, i, q.lobe.weight, kInvPi * enters * z * reflects_in_front(q, p, i));
     add_density(diffuse_density(p));
   });
 }

@@ -23,6 +23,12 @@ inline Pair make_pair(const ShadingBatch& s, const Vec3Lanes& wi_lanes, int i) {
   return {wo, wi, n, zo, zi, same_side ? on : 0.0f, same_side ? 0.0f : on};
 }
 
+/// `reflects` where light counts only in front of the shading normal, on the side that is seen: with it a surface whose
+/// normals are mapped has flanks that are dark. pbrt-v3's own materials go by the geometric normal alone.
+inline float reflects_in_front(const LobeQuery& q, const Pair& p, int i) {
+  return p.zi * dot(q.s.wo[i], q.s.ng[i]) > 0 ? p.reflects : 0.0f;
+}
+
 /// The density of draw_diffuse(), and that of the other side.
 inline float diffuse_density(const Pair& p) { return p.zo * p.zi > 0 ? std::abs(p.zi) * kInvPi : 0.0f; }
 inline float diffuse_density_behind(const Pair& p) { return p.zo * p.zi < 0 ? std::abs(p.zi) * kInvPi : 0.0f; }

@@ -55,7 +55,9 @@ inline float let_through(const Lobe& lobe, int i, float outer_cosine) {
 void eval_reflection(const LobeQuery& q, const LobeValues& out) {
   const Lobe& lobe = q.lobe;
   const RGBLanes f0 = lobe.colour1, f90 = lobe.colour2;
-  for_turned_facets(q, out, [&](int i, const Pair& p, const auto& d, const auto& add_density) {
+  for_turned_facets(q, out, [&](int i, const Pair& pair, const auto& d, const auto& add_density) {
+    Pair p = pair;
+    p.reflects = reflects_in_front(q, pair, i);
     const float f = microfacet_reflection(d, p, FresnelType::One, 1.0f);
     const float c = outer_cosine(abs_dot(p.wi, normalize(p.wo + p.wi)), p.zo, lobe.eta[i]);
     out.f.r[i] += lobe.weight.r[i] * f * schlick_reflectance(c, f0.r[i], f90.r[i]);
