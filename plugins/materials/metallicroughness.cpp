@@ -84,6 +84,8 @@ struct MetallicRoughness : Material {
   bool lets_through() const { return is_body_seen() && may_be_positive(transmission); }
   /// An index of 0 stands for one without bound: all is reflected, and nothing bends.
   bool is_solid() const { return lets_through() && !thin && ior > 0; }
+  /// Facets of an index of 1 bend nothing and blur nothing. (A half vector of a refraction that does not bend is rounding.)
+  bool is_clear() const { return is_smooth() || (is_solid() && std::abs(ior - 1) < 1e-4f); }
   /// In a solid there is total reflection, whatever the outside reflects.
   bool is_shiny() const { return may_be_positive(metallic) || is_coupled() || is_solid(); }
   bool has_facets() const { return is_shiny() || lets_through(); }
@@ -215,25 +217,24 @@ struct MetallicRoughness : Material {
   void add_diffuse(const ShadingBatch& s, const Body& at, LobeSet& out) const {
     const RGBLanes weight = s.arena->rgb(s.n);
     float* const position = s.arena->floats(s.n);
-    const bool coupled = is_coupled();
-    Lobe& lobe = add(coupled ? LobeType::CoupledDiffuse : LobeType::LambertReflection, weight, out);
+    Lobe& lobe = add(LobeType::CoupledDiffuse, weight, out);
     lobe.a = position, lobe.c = at.own0, lobe.d = at.own90;
     if (s.n == 0) return;
-    const bool solid = is_solid(), smooth = is_smooth();
-    const FacetAlbedo* const albedo = coupled ? &facet_albedo() : nullptr;
+    // Without facets nothing depends on how smooth they are.
+    const bool solid = is_solid(), smooth = !at.b;
+    const FacetAlbedo& albedo = facet_albedo();
     for_lanes(s.n, [&](int i) {
       const float z = dot(s.wo[i], s.ns[i]), all = at.share[i] * (1 - at.metal[i]) * (1 - at.through[i]);
       const RGB c = at.colour[i];
       weight.set(i, c * (solid && z < 0 ? 0.0f : all));
     });
-    if (!coupled) return;
     for_lanes(s.n, [&](int i) {
       // Of stretched facets those across reflect most at grazing angles: less is let in, and never too much.
       position[i] = FacetAlbedo::position(smooth ? 0.0f : at.b[i]);
       const float z = abs_dot(s.wo[i], s.ns[i]), f0 = at.own0[i], f90 = at.own90[i];
-      const float leaves = max_of(1 - (*albedo)(z, position[i], f0, f90), 0.0f);
+      const float leaves = max_of(1 - albedo(z, position[i], f0, f90), 0.0f);
       // Facets that reflect nearly all let in hardly more than what others of them would reflect in turn.
-      const float mean = max_of(1 - albedo->mean(position[i], f0, f90), 0.05f);
+      const float mean = max_of(1 - albedo.mean(position[i], f0, f90), 0.05f);
       weight.set(i, weight[i] * (leaves / mean));
     });
   }
@@ -244,7 +245,7 @@ struct MetallicRoughness : Material {
       const RGB c = at.colour[i];
       weight.set(i, c * (at.share[i] * (1 - at.metal[i]) * at.through[i]));
     });
-    if (!is_smooth()) {
+    if (!is_clear()) {
       Lobe& lobe = add(is_solid() ? LobeType::SchlickTransmission : LobeType::SchlickPassage, weight, out);
       set_facets(at, lobe);
       lobe.colour1 = grey(at.own0), lobe.colour2 = grey(at.own90);

@@ -232,7 +232,7 @@ TEST(MetallicRoughness, HasTheLobesItsParametersCallFor) {
   EXPECT_EQ(types_of({floats("roughness", {0})}), Types{SpecularReflection});
   EXPECT_EQ(types_of({floats("transmission", {1})}), Types{SchlickReflection}) << "metal lets nothing through";
   EXPECT_EQ(dielectric({}), (Types{SchlickReflection, CoupledDiffuse}));
-  EXPECT_EQ(dielectric({floats("specular", {0})}), Types{LambertReflection});
+  EXPECT_EQ(dielectric({floats("specular", {0})}), Types{CoupledDiffuse});
   EXPECT_EQ(dielectric({floats("roughness", {0})}), (Types{CoupledDiffuse, SpecularReflection}));
   EXPECT_EQ(dielectric({floats("transmission", {1})}), (Types{SchlickReflection, SchlickPassage}));
   EXPECT_EQ(dielectric({floats("transmission", {0.5}), floats("roughness", {0})}),
