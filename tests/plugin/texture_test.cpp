@@ -314,6 +314,19 @@ TEST(ImageMap, TakesAPictureThatIsAttached) {
   EXPECT_NE(said.all()[0].message.find("model.glb: /images/0"), std::string::npos);
 }
 
+TEST(Angle, IsThatOfTheDirection) {
+  const auto degrees = [](double x, double y, double offset) {
+    return *make_plugin<Texture<float>>(
+                "float texture", "angle",
+                {test::floats("x", {x}), test::floats("y", {y}), test::floats("offset", {offset})})
+                ->constant();
+  };
+  EXPECT_NEAR(degrees(1, 0.5, 0), 0, 1e-5f);              // (1, 0)
+  EXPECT_NEAR(degrees(0.5, 1, 0), 90, 1e-4f);             // (0, 1)
+  EXPECT_NEAR(degrees(0, 0, 10), -125, 1e-4f);            // (-1, -1): -135 degrees
+  EXPECT_NEAR(degrees(0.75, 0.933012702, 0), 60, 1e-4f);  // (1/2, sqrt(3)/2)
+}
+
 TEST(Threshold, IsOneFromTheEdgeOn) {
   // bilerp of 0 and 1 along u is u itself.
   const auto ramp = [](double edge, double u) {
