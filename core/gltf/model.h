@@ -61,7 +61,7 @@ struct Material {
   TextureUse clearcoat_texture;       ///< Red.
   double clearcoat_roughness = 0;
   TextureUse clearcoat_roughness_texture;  ///< Green.
-  TextureUse clearcoat_normal_texture;     ///< Only to say that it is ignored, unless it is the normal texture.
+  TextureUse clearcoat_normal_texture;     ///< Only to say that it is ignored.
   Vec3d sheen_color{0, 0, 0};              ///< KHR_materials_sheen
   TextureUse sheen_color_texture;          ///< sRGB.
   double sheen_roughness = 0;
@@ -77,7 +77,7 @@ struct Sampler {
 };
 
 struct Texture {
-  int image = -1;  ///< Of EXT_texture_webp or KHR_texture_basisu where the texture has them, else "source".
+  int image = -1;  ///< Of EXT_texture_webp where the texture has them, else "source".
   Sampler sampler;
 };
 
