@@ -33,13 +33,17 @@ class FileReader {
 
   uint64_t read(uint32_t main_file, SceneBuilder& builder) {
     push(main_file);
+    open_.back().is_model = options_.is_model;
     while (!open_.empty()) {
       const ReadResult result = read_statement(open_.back().lexer, statement_);
       append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
       release(open_.back());
       if (result == ReadResult::End) open_.pop_back();
       if (result != ReadResult::Good) continue;
+      if (!open_.back().for_shapes.empty()) add_for_shapes();
+      builder.set_in_model(open_.back().is_model);
       builder.apply(statement_);
+      if (builder.take_model()) place_model(builder);
       auto include = builder.take_include();
       if (!include) continue;
       if (can_contribute(builder)) {
@@ -55,7 +59,9 @@ class FileReader {
   struct OpenFile {
     uint32_t file;
     Lexer lexer;
-    ParameterList trailing;  ///< Those behind the Include, for the last statement.
+    ParameterList trailing;    ///< Those behind the Include, for the last statement.
+    ParameterList for_shapes;  ///< Of a model's text: for each of its shapes.
+    bool is_model = false;
     uint64_t released = 0;
   };
 
@@ -71,7 +77,7 @@ class FileReader {
   void push(uint32_t file, ParameterList trailing = {}) {
     const std::string_view text = sources_.text(file);
     bytes_ += text.size();
-    open_.push_back({file, Lexer(text, file, reporter_), std::move(trailing)});
+    open_.push_back({file, Lexer(text, file, reporter_), std::move(trailing), {}, false});
   }
 
   /// False when what is read now belongs to an object that the world does not place.
@@ -93,6 +99,33 @@ class FileReader {
     };
     if (const auto file = open_include(sources_, reporter_, folder_, request.path, request.where, is_open))
       push(*file, std::move(request.parameters));
+  }
+
+  /// A Shape of a model's text gets the parameters that the statement had which placed the model.
+  void add_for_shapes() {
+    if (statement_.row->name != "Shape") return;
+    const ParameterList& added = open_.back().for_shapes;
+    statement_.parameters.insert(statement_.parameters.end(), added.begin(), added.end());
+  }
+
+  /// Reads the statements that stand for the model of the last statement next; not where nothing places them.
+  void place_model(SceneBuilder& builder) {
+    const auto filename = std::find_if(statement_.parameters.begin(), statement_.parameters.end(),
+                                       [](const Parameter& p) { return p.name == "filename" && !p.strings().empty(); });
+    if (filename != statement_.parameters.end() && !can_contribute(builder)) {
+      builder.leave_unread(join_path(folder_, filename->strings().front()), filename->where);
+      return;
+    }
+    Diagnostics said;
+    std::optional<ModelStatements> model =
+        options_.models->read({statement_.parameters, statement_.where, folder_, builder.open_object() != nullptr,
+                               builder.is_under_emission()},
+                              said);
+    for (const Diagnostic& d : said.all()) reporter_.pass(d);
+    if (!model) return;
+    push(sources_.add_text(std::move(model->name), std::move(model->text)));
+    open_.back().for_shapes = std::move(model->for_shapes);
+    open_.back().is_model = true;
   }
 
   Sources& sources_;
@@ -124,8 +157,9 @@ ParseResult parse_once(Sources& sources, uint32_t file, const std::string& folde
                        bool& needs_unread) {
   ParseResult result;
   Reporter reporter(result.diagnostics);
+  if (options.models) options.models->begin();
   if (check_is_scene(sources, file, reporter)) {
-    SceneBuilder builder(sources, reporter, absolute(folder));
+    SceneBuilder builder(sources, reporter, absolute(folder), options.models);
     result.bytes = FileReader(sources, reporter, folder, options).read(file, builder);
     builder.finish(file);
     needs_unread = builder.needs_unread();
@@ -139,7 +173,8 @@ ParseResult parse(Sources& sources, uint32_t file, const std::string& folder, co
   bool needs_unread = false;
   ParseResult result = parse_once(sources, file, folder, options, needs_unread);
   if (must_read_all(result, needs_unread))
-    result = parse_once(sources, file, folder, {.read_unplaced = true}, needs_unread);
+    result = parse_once(sources, file, folder,
+                        {.read_unplaced = true, .models = options.models, .is_model = options.is_model}, needs_unread);
   return result;
 }
 

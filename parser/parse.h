@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/base/diagnostics.h"
+#include "parser/models.h"
 #include "parser/scene_description.h"
 #include "parser/source.h"
 
@@ -21,6 +22,9 @@ struct ParseOptions {
   /// Reads also the files that are included in definitions of objects that are never placed. Without it they are listed
   /// in SceneDescription::unread_files instead.
   bool read_unplaced = false;
+  /// Reads models; without it a Shape "gltf" stays the statement that it is. Must outlive the call alone.
+  ModelReader* models = nullptr;
+  bool is_model = false;  ///< The text is a model's, of what `models` has read, with its attachments.
 };
 
 /// Parses a file and all it includes. `sources` keeps their text, which every SourcePos refers to.

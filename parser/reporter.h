@@ -32,6 +32,11 @@ class Reporter {
     out_.add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), other, true});
   }
 
+  /// What others have found.
+  void pass(const Diagnostic& found) {
+    if (admit(found.where, found.severity)) out_.add(found);
+  }
+
   /// Takes down that the text is of another version of pbrt: finish() says so once, at the first place. `what` is what
   /// shows it; `remedy` what to write instead, if there is such a thing.
   void foreign(SourcePos where, const std::string& version, Severity severity, const std::string& what,

@@ -51,8 +51,8 @@ Mat4d sixteen(const Statement& s) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder)
-    : sources_(sources), reporter_(reporter) {
+SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder, const ModelReader* models)
+    : sources_(sources), reporter_(reporter), models_(models) {
   options_.folder = std::move(folder);
 }
 
@@ -538,6 +538,7 @@ void SceneBuilder::texture(Statement& s) {
   out.name = s.names[0];
   out.spectrum = type != "float";
   out.transform = current_transform(s, true);
+  out.picture = take_attachment<PictureBytes>(s.parameters);
   static_cast<Entity&>(out) = entity(s, 2);
   const int index = static_cast<int>(scene().textures.size());
   define(out.spectrum ? spectrum_textures_ : float_textures_, out.name, index);
@@ -609,8 +610,26 @@ void SceneBuilder::area_light_source(Statement& s) {
   if (!s.names[0].empty()) scene().area_lights.push_back(entity(s));
 }
 
+/// What a statement of a model's text names as attached, in place of the parameter that names it.
+template <class T>
+std::shared_ptr<const T> SceneBuilder::take_attachment(ParameterList& list) {
+  if (!models_ || !in_model_) return nullptr;
+  for (auto p = list.begin(); p != list.end(); ++p) {
+    if (p->name != ModelReader::kAttached || p->strings().size() != 1) continue;
+    auto found = std::dynamic_pointer_cast<const T>(models_->attachment(p->strings().front()));
+    list.erase(p);
+    return found;
+  }
+  return nullptr;
+}
+
 void SceneBuilder::shape(Statement& s) {
   ShapeDescription out;
+  out.mesh = take_attachment<MeshSource>(s.parameters);
+  if (models_ && s.names[0] == "gltf" && !out.mesh) {
+    places_model_ = true;
+    return;
+  }
   out.transform = current_transform(s, false);
   out.material = state_.material;
   out.area_light = state_.area_light;

@@ -4,8 +4,10 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
+#include "parser/models.h"
 #include "parser/reporter.h"
 #include "parser/scene_description.h"
 #include "parser/source.h"
@@ -17,7 +19,7 @@ namespace whit {
 class SceneBuilder {
  public:
   /// `folder` is the absolute folder of the main file.
-  SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder);
+  SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder, const ModelReader* models = nullptr);
 
   /// Does what a statement asks for, or reports why it cannot.
   void apply(Statement& statement);
@@ -29,6 +31,13 @@ class SceneBuilder {
   };
   /// The file the last statement wants read now, if it was an Include.
   std::optional<IncludeRequest> take_include();
+
+  /// The statement that places a model, if the last one did and models are read. It made no shape.
+  bool take_model() { return std::exchange(places_model_, false); }
+  bool is_under_emission() const { return state_.area_light >= 0; }
+
+  /// Whether the statements from here on are of a model's text, which may name what is attached.
+  void set_in_model(bool in_model) { in_model_ = in_model; }
 
   /// The object whose definition is being read, null outside of one.
   const ObjectDescription* open_object() const {
@@ -144,6 +153,8 @@ class SceneBuilder {
   Entity entity(Statement& s, size_t name_index = 0);
   bool take_type(Statement& s, Entity& out);
   void resolve_textures(ParameterList& list);
+  template <class T>
+  std::shared_ptr<const T> take_attachment(ParameterList& list);
   void add_material(Entity made, std::string name);
   void warn_no_material(const std::string& name, SourcePos where, const std::string& instead);
   void define(Names& names, const std::string& name, int index);
@@ -162,6 +173,7 @@ class SceneBuilder {
 
   const Sources& sources_;
   Reporter& reporter_;
+  const ModelReader* const models_;
 
   bool in_world_ = false;
   bool world_missing_reported_ = false;
@@ -185,6 +197,8 @@ class SceneBuilder {
   bool needs_unread_ = false;     ///< Something looks wrong that may be right with such files.
   int warned_area_light_ = -1;
   std::optional<IncludeRequest> include_;
+  bool places_model_ = false;
+  bool in_model_ = false;
 };
 
 }  // namespace whit

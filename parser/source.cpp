@@ -367,6 +367,10 @@ std::string foreign_characters(std::string_view text) {
 
 std::string why_not_text(std::string_view text) {
   if (text.starts_with("\x1f\x8b")) return "it is compressed with gzip";
+  constexpr const char* kModel =
+      "a glTF model: name its file to render it, place it by Shape \"gltf\", or `whit import` it";
+  if (text.starts_with("glTF")) return std::string("it is ") + kModel;
+  if (text.starts_with('{')) return std::string("it is JSON, perhaps ") + kModel;
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) return "it is UTF-16 text, not UTF-8";
   if (text.find('\0') != std::string_view::npos) return "it holds binary data";
   // Comments may be in any encoding of old, so bytes that are no UTF-8 weigh less than control characters.

@@ -1,21 +1,42 @@
 #include "core/session/session.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <utility>
 
 #include "core/scene/problems.h"
+#include "core/session/models.h"
 #include "parser/lexer.h"
 
 namespace whit {
 namespace {
 
-ParsedFile parsed_file(const std::function<ParseResult(Sources&)>& parse) {
+ParsedFile parsed_file(const ReadOptions& options,
+                       const std::function<ParseResult(Sources&, ModelStore&, const ParseOptions&)>& parse) {
   const Stopwatch watch;
   ParsedFile file;
-  ParseResult parsed = parse(*file.sources);
+  ModelStore models(options.allow_outside);
+  ParseResult parsed = parse(*file.sources, models, {.read_unplaced = options.read_unplaced, .models = &models});
   file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
+  file.notes = models.notes();
   file.elapsed = watch.elapsed();
   return file;
+}
+
+/// A model as a scene: the statements that stand for it, parsed.
+ParseResult parse_model(Sources& sources, const std::string& path, const gltf::Selection& selection, ModelStore& models,
+                        const ParseOptions& options) {
+  ParseResult failed;
+  ParseOptions as_model = options;
+  as_model.is_model = true;
+  auto scene = models.scene_of(path, selection, failed.diagnostics);
+  if (!scene) return failed;
+  ParseResult result = parse_text(sources, path + " as statements", std::move(scene->text),
+                                  std::filesystem::path(path).parent_path().string(), as_model);
+  Diagnostics all = std::move(failed.diagnostics);
+  all.append(result.diagnostics);
+  result.diagnostics = std::move(all);
+  return result;
 }
 
 /// A build of which effects are compiled out is for measurements, and must not show half of a scene.
@@ -28,12 +49,17 @@ void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
 
 }  // namespace
 
-ParsedFile read_scene_file(const std::string& path, const ParseOptions& options) {
-  return parsed_file([&](Sources& sources) { return parse_file(sources, path, options); });
+ParsedFile read_scene_file(const std::string& path, const ReadOptions& options) {
+  return parsed_file(options, [&](Sources& sources, ModelStore& models, const ParseOptions& parse) {
+    return is_model_file(path) ? parse_model(sources, path, options.model, models, parse)
+                               : parse_file(sources, path, parse);
+  });
 }
 
-ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options) {
-  return parsed_file([&](Sources& sources) { return parse_text(sources, name, std::move(text), "", options); });
+ParsedFile read_scene_text(const std::string& name, std::string text, const ReadOptions& options) {
+  return parsed_file(options, [&](Sources& sources, ModelStore&, const ParseOptions& parse) {
+    return parse_text(sources, name, std::move(text), "", parse);
+  });
 }
 
 PlannedWorld plan_world(const SceneDescription& world, const Sources& sources, const PlanOptions& options) {

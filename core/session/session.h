@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/stopwatch.h"
+#include "core/gltf/describe.h"
 #include "core/image/texture_store.h"
 #include "core/render/render.h"
 #include "core/scene/scene.h"
@@ -24,12 +25,19 @@ struct ParsedFile {
   std::unique_ptr<Sources> sources = std::make_unique<Sources>();
   std::vector<SceneDescription> worlds;  ///< One for each WorldBegin.
   uint64_t bytes = 0;                    ///< Of text, included files counted each time.
+  std::vector<std::string> notes;        ///< What people may want to know of how models are shown.
   Diagnostics said;
   Elapsed elapsed;
 };
-ParsedFile read_scene_file(const std::string& path, const ParseOptions& options = {});
+struct ReadOptions {
+  bool read_unplaced = false;  ///< ParseOptions::read_unplaced.
+  gltf::Selection model = {};  ///< Of a model's file that is read as a scene; of no other may anything be selected.
+  bool allow_outside = false;  ///< Models may name files outside of their folder.
+};
+/// A .pbrt file, or a glTF model, of which a scene is made.
+ParsedFile read_scene_file(const std::string& path, const ReadOptions& options = {});
 /// Text that is no file, under the name that messages show; what it includes is looked for in the current folder.
-ParsedFile read_scene_text(const std::string& name, std::string text, const ParseOptions& options = {});
+ParsedFile read_scene_text(const std::string& name, std::string text, const ReadOptions& options = {});
 
 /// One world of a file, its statements bound, and what the picture needs of them. Nothing is read yet.
 struct PlannedWorld {

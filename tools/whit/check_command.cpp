@@ -3,6 +3,7 @@
 #include "core/session/output.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
+#include "tools/whit/model_flags.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -29,16 +30,25 @@ Diagnostics problems_of_building(PlannedWorld planned, const std::string& path) 
 
 int check_command(const Arguments& args) {
   std::vector<std::string> scenes;
-  const CommandLine command{
-      "whit check",
-      "Reports every problem of a scene without rendering; what a render warns of and goes past as "
-      "pbrt-v3 does is an error here. Exit code 1 when there is any.",
-      {{"scenes", &scenes, "Scene files; standard input without any"}}};
+  ModelFlags model;
+  CommandLine command{"whit check",
+                      "Reports every problem of a scene without rendering; what a render warns of and goes past as "
+                      "pbrt-v3 does is an error here. Exit code 1 when there is any.",
+                      {{"scenes", &scenes, "Scene files or glTF models; standard input without any"}}};
+  add_model_flags(command, model);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
   if (scenes.empty()) scenes.push_back("-");
   for (const std::string& path : scenes) {
-    const ParsedFile file = read_scene(path, {.read_unplaced = true});
+    if (const std::string problem = usage_problem(model, path); !problem.empty()) {
+      say("whit check: " + problem);
+      return kUsage;
+    }
+  }
+  ReadOptions options = read_options(model);
+  options.read_unplaced = true;
+  for (const std::string& path : scenes) {
+    const ParsedFile file = read_scene(path, options);
     const Diagnostics all =
         all_problems(file, [&](PlannedWorld planned) { return problems_of_building(std::move(planned), path); });
     print_diagnostics(*file.sources, unexcused(all));

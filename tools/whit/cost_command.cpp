@@ -13,6 +13,7 @@
 #include "core/accuracy/report.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
+#include "tools/whit/model_flags.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/text_file.h"
@@ -27,6 +28,7 @@ struct CostFlags {
   bool quick = false, all_samplers = false;
   int threads = 0;
   uint32_t seed = 0;
+  ModelFlags model;
 };
 
 /// "" or what is wrong with the flags.
@@ -106,7 +108,7 @@ int write_report(const CostFlags& flags, const CostReport& report) {
 }
 
 int run(const CostFlags& flags, const CostRequest& begun) {
-  ParsedFile file = read_scene(flags.scene);
+  ParsedFile file = read_scene(flags.scene, read_options(flags.model));
   if (file.said.has_errors() || file.worlds.empty()) {
     const Diagnostics all = all_problems(file);
     print_diagnostics(*file.sources, all);
@@ -131,21 +133,22 @@ int run(const CostFlags& flags, const CostRequest& begun) {
 int cost_command(const Arguments& args) {
   const CostRequest begun;  // Its clock runs from here.
   CostFlags flags;
-  const CommandLine command{
-      "whit cost",
-      "Measures what accuracy costs in time for a scene, and what its settings bring.",
-      {{"scene", &flags.scene, "Scene file; - is standard input", {.required = true}},
-       {"--time", &flags.time, "Time for all of it: 60s, 2min, 1500ms"},
-       {"--html", &flags.html, "Write the report as one page; - is standard output, for all three"},
-       {"--json", &flags.json, "Write it for programs"},
-       {"--csv", &flags.csv, "Write the settings as a table"},
-       {"--quick", &flags.quick, "Samples alone: no other settings, no effects"},
-       {"--all-samplers", &flags.all_samplers, "Every sampler, not only the scene's, sobol and random"},
-       {"--seed", &flags.seed, "Seed of the first of the pictures that are compared"},
-       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}}}};
+  CommandLine command{"whit cost",
+                      "Measures what accuracy costs in time for a scene, and what its settings bring.",
+                      {{"scene", &flags.scene, "Scene file; - is standard input", {.required = true}},
+                       {"--time", &flags.time, "Time for all of it: 60s, 2min, 1500ms"},
+                       {"--html", &flags.html, "Write the report as one page; - is standard output, for all three"},
+                       {"--json", &flags.json, "Write it for programs"},
+                       {"--csv", &flags.csv, "Write the settings as a table"},
+                       {"--quick", &flags.quick, "Samples alone: no other settings, no effects"},
+                       {"--all-samplers", &flags.all_samplers, "Every sampler, not only the scene's, sobol and random"},
+                       {"--seed", &flags.seed, "Seed of the first of the pictures that are compared"},
+                       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}}}};
+  add_model_flags(command, flags.model, false);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
   std::string problem = usage_problem(flags);
+  if (problem.empty()) problem = usage_problem(flags.model, flags.scene);
   code = kUsage;
   if (problem.empty()) problem = file_problem(flags), code = kFileError;
   if (!problem.empty()) {

@@ -9,6 +9,7 @@
 #include "tools/whit/effect_flags.h"
 #include "tools/whit/json.h"
 #include "tools/whit/load.h"
+#include "tools/whit/model_flags.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -157,8 +158,10 @@ int explain_command(const Arguments& args) {
   EffectFlags flags;
   CommandLine command{"whit explain",
                       "Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
-                      {{"scene", &path, "Scene file; standard input without"}}};
+                      {{"scene", &path, "Scene file or glTF model; standard input without"}}};
+  ModelFlags model;
   add_effect_flags(command, flags);
+  add_model_flags(command, model);
   command.flags.push_back({"--json", &as_json, "Print the plan as JSON"});
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
@@ -166,7 +169,11 @@ int explain_command(const Arguments& args) {
     say("whit explain: " + problem);
     return kUsage;
   }
-  ParsedFile file = read_scene(path);
+  if (const std::string problem = usage_problem(model, path); !problem.empty()) {
+    say("whit explain: " + problem);
+    return kUsage;
+  }
+  ParsedFile file = read_scene(path, read_options(model));
   if (const std::string problem = override_worlds(file, flags.overrides); !problem.empty()) {
     say("whit explain: " + problem);
     return kUsage;

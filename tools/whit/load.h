@@ -8,6 +8,6 @@
 namespace whit {
 
 /// Reads a file, or standard input where the path is "" or "-".
-ParsedFile read_scene(const std::string& path, const ParseOptions& options = {});
+ParsedFile read_scene(const std::string& path, const ReadOptions& options = {});
 
 }  // namespace whit

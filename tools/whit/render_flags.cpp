@@ -54,7 +54,7 @@ std::string take_stats_file(Arguments& args, std::string& file) {
 
 std::vector<Flag> flags_of(RenderSettings& s) {
   return {
-      {"scenes", &s.scenes, "Scene files; standard input without any"},
+      {"scenes", &s.scenes, "Scene files or glTF models; standard input without any"},
       {"--outfile,-o", &s.output.outfile, "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)"},
       {"--display", &s.output.display, "Display picture beside a linear one; 'none' for none (default: .png)"},
       {"--aov",
@@ -141,6 +141,9 @@ std::string usage_problem(const RenderSettings& s) {
     return "--stats FILE.json is of pictures, and none is made";
   }
   if (std::string problem = usage_problem(s, s.target); !problem.empty()) return problem;
+  for (const std::string& scene : s.scenes) {
+    if (std::string problem = usage_problem(s.model, scene); !problem.empty()) return problem;
+  }
   return usage_problem(s.effects);
 }
 
@@ -177,8 +180,9 @@ std::vector<int> numbers_of(const std::string& text) {
 }
 
 bool read_render_flags(const Arguments& args, RenderSettings& settings, int& code) {
-  CommandLine command{"whit", "Renders pbrt-v3 scene files.", flags_of(settings)};
+  CommandLine command{"whit", "Renders pbrt-v3 scene files and glTF models.", flags_of(settings)};
   add_effect_flags(command, settings.effects);
+  add_model_flags(command, settings.model);
   for (const Flag& flag : more_flags_of(settings)) command.flags.push_back(flag);
   Arguments words = split_lists(args);
   std::string problem = take_stats_file(words, settings.stats_file);

@@ -7,6 +7,7 @@
 #include "core/session/output.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/effect_flags.h"
+#include "tools/whit/model_flags.h"
 
 namespace whit {
 
@@ -24,6 +25,7 @@ struct RenderSettings {
   std::vector<int> pixel;
   std::string debug_pixel;
   EffectFlags effects;
+  ModelFlags model;
   TargetFlags target;
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
