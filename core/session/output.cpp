@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <future>
 
@@ -17,16 +18,33 @@ OutputImage to_output(const Picture& picture, std::span<const float> rgb) {
   return image;
 }
 
+bool is_read(const OutputRequest& request, const std::string& path) {
+  const std::filesystem::path name = std::filesystem::path(path).filename();
+  return std::any_of(request.read.begin(), request.read.end(), [&](const std::string& read) {
+    std::error_code failed;
+    return std::filesystem::path(read).filename() == name && std::filesystem::equivalent(read, path, failed);
+  });
+}
+
+/// A name that nobody has given, or one beside it where the scene reads a file of that name.
+std::string unread_name(const OutputRequest& request, const std::filesystem::path& name) {
+  if (!is_read(request, name.string())) return name.string();
+  std::filesystem::path other = name;
+  other.replace_filename(name.stem().string() + "-whit" + name.extension().string());
+  return other.string();
+}
+
 void choose_names(const OutputRequest& request, const Film& film, OutputPlan& plan) {
   plan.main_file = !request.outfile.empty() ? request.outfile : film.file_name();
   if (plan.main_file.empty()) {
     const std::filesystem::path scene(request.scene_path);
-    plan.main_file = (scene.stem().empty() || request.scene_path == "-" ? "whit" : scene.stem().string()) + ".exr";
+    const bool has_name = !scene.stem().empty() && request.scene_path != "-";
+    plan.main_file = unread_name(request, (has_name ? scene.stem().string() : "whit") + ".exr");
   }
   if (is_linear_format(plan.main_file) && request.display != "none") {
     plan.display_file = !request.display.empty()
                             ? request.display
-                            : std::filesystem::path(plan.main_file).replace_extension(".png").string();
+                            : unread_name(request, std::filesystem::path(plan.main_file).replace_extension(".png"));
   }
 }
 
@@ -54,7 +72,8 @@ void add_aovs(const AovPicture& aovs, OutputImage& image) {
 void check_files(const OutputRequest& request, const Bound<Film>& film, OutputPlan& plan) {
   for (const std::string& path : {plan.main_file, plan.display_file}) {
     if (path.empty()) continue;
-    std::string problem = check_writable(path);
+    std::string problem =
+        is_read(request, path) ? fmt::format("\"{}\" is a file that the scene reads", path) : check_writable(path);
     if (problem.empty()) continue;
     const bool by_film = request.outfile.empty() && !film.plugin->file_name().empty() && path == plan.main_file;
     plan.said.file_error(by_film ? film.where : SourcePos{}, std::move(problem));
@@ -101,6 +120,21 @@ Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Re
 }
 
 }  // namespace
+
+std::vector<std::string> files_read(const SceneDescription& world) {
+  std::vector<std::string> files;
+  const auto add = [&](const Entity& entity) {
+    for (const Parameter& p : entity.params) {
+      if (p.name != "filename" && p.name != "mapname") continue;
+      for (const std::string& file : p.strings())
+        files.push_back((std::filesystem::path(world.folder) / file).string());
+    }
+  };
+  for (const auto& t : world.textures) add(t);
+  for (const auto& l : world.lights) add(l);
+  for (const auto& s : world.shapes) add(s);
+  return files;
+}
 
 OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film) {
   OutputPlan plan;

@@ -24,7 +24,11 @@ struct OutputRequest {
   std::optional<double> exposure;  ///< --exposure; none takes the film's.
   bool full_float = false;
   std::vector<std::string> aovs;  ///< --aov; none takes the film's, "none" alone writes none.
+  std::vector<std::string> read;  ///< Files that the scene reads, files_read(): no picture may take the place of one.
 };
+
+/// The files that the textures, lights and shapes of a world name, live or not.
+std::vector<std::string> files_read(const SceneDescription& world);
 
 /// What a render writes and how. Where `said` has an error nothing should be rendered: it is at the Film statement if
 /// that asked for what cannot be had, else it has no place.

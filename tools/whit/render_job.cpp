@@ -30,7 +30,7 @@ class RenderJob {
       : settings_(settings),
         path_(std::move(path)),
         stats_(stats),
-        file_(read_scene(path_)),
+        file_(read_scene(path_, read_options(settings.model))),
         parsed_memory_(resident_memory()) {
     times_.program = before.program, times_.flags = before.flags;
   }
@@ -43,6 +43,9 @@ class RenderJob {
     reported_whole_ = file_.said.has_errors();
     if (int code = report(reported_whole_ ? all_problems(file_) : file_.said); code != kDone) return code;
     if (file_.worlds.empty()) return kSceneError;
+    if (!settings_.quiet) {
+      for (const std::string& note : file_.notes) say("whit: " + note);
+    }
     if (!problem.empty()) {
       say("whit: " + problem);
       return kUsage;
@@ -112,7 +115,7 @@ class RenderJob {
     if (!planned.bound.film.plugin) return kSceneError;
 
     const Stopwatch planning_output;
-    const OutputPlan output = plan_output(output_request(), planned.bound.film);
+    const OutputPlan output = plan_output(output_request(world), planned.bound.film);
     times_.output = planning_output.elapsed();
     if (int code = report_output(output.said); code != kDone) return code;
     for (const std::string& name : {output.main_file, output.display_file}) {
@@ -152,9 +155,10 @@ class RenderJob {
     return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
   }
 
-  OutputRequest output_request() const {
+  OutputRequest output_request(const SceneDescription& world) const {
     OutputRequest request = settings_.output;
     request.scene_path = path_;
+    request.read = files_read(world);
     request.full_float = settings_.half_or_float == "float";
     return request;
   }
