@@ -16,6 +16,7 @@ int check_command(const Arguments& args);    ///< whit check SCENE...
 int fmt_command(const Arguments& args);      ///< whit fmt SCENE
 int explain_command(const Arguments& args);  ///< whit explain SCENE
 int cost_command(const Arguments& args);     ///< whit cost SCENE
+int import_command(const Arguments& args);   ///< whit import MODEL -o SCENE
 int diff_command(const Arguments& args);     ///< whit diff A B
 int bench_command(const Arguments& args);    ///< whit bench [SCENES...]
 int help_command(const Arguments& args);     ///< whit help [CATEGORY [PLUGIN] | --json]

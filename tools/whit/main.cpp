@@ -15,11 +15,13 @@ namespace whit {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
-      {"render", render_command, "[render] SCENE... [flags]", "render scenes (the word may be left out)"},
+      {"render", render_command, "[render] SCENE... [flags]",
+       "render scenes and glTF models (the word may be left out)"},
       {"check", check_command, "check SCENE...", "report every problem of a scene without rendering"},
       {"fmt", fmt_command, "fmt SCENE [--in-place]", "write a scene file in normal form"},
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},
+      {"import", import_command, "import MODEL [-o SCENE.pbrt]", "write a glTF model as a scene to edit"},
       {"diff", diff_command, "diff OUT REFERENCE [--json]", "measure how far two pictures are apart"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
       {"help", help_command, "help [CATEGORY [PLUGIN] | --json]", "list plugins and their parameters"},
