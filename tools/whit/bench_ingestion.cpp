@@ -90,6 +90,36 @@ void write_ply(const std::string& path, const Sheet& sheet) {
   close(file, path);
 }
 
+/// The same mesh, interleaved, as a model of one node.
+void write_glb(const std::string& path, const Sheet& sheet) {
+  const size_t vertex_bytes = sheet.vertices.size() * sizeof(Sheet::Vertex),
+               index_bytes = sheet.indices.size() * sizeof(int32_t);
+  const auto attribute = [&](int offset, const char* type, const char* more) {
+    return fmt::format(R"({{"bufferView":0,"byteOffset":{},"componentType":5126,"count":{},"type":"{}"{}}})", offset,
+                       sheet.vertices.size(), type, more);
+  };
+  std::string json = fmt::format(
+      R"({{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],)"
+      R"("meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"NORMAL":1,"TEXCOORD_0":2}},"indices":3}}]}}],)"
+      R"("accessors":[{},{},{},{{"bufferView":1,"componentType":5125,"count":{},"type":"SCALAR"}}],)"
+      R"("bufferViews":[{{"buffer":0,"byteLength":{},"byteStride":32}},{{"buffer":0,"byteOffset":{},"byteLength":{}}}],)"
+      R"("buffers":[{{"byteLength":{}}}]}})",
+      attribute(0, "VEC3", R"(,"min":[0,0,-1],"max":[1,1,1])"), attribute(12, "VEC3", ""), attribute(24, "VEC2", ""),
+      sheet.indices.size(), vertex_bytes, vertex_bytes, index_bytes, vertex_bytes + index_bytes);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::ofstream file(path, std::ios::binary);
+  const auto words = [&](std::initializer_list<uint32_t> list) {
+    for (const uint32_t word : list) file.write(reinterpret_cast<const char*>(&word), sizeof word);
+  };
+  const auto body = static_cast<uint32_t>(vertex_bytes + index_bytes), text = static_cast<uint32_t>(json.size());
+  words({0x46546c67, 2, 28 + text + body, text, 0x4e4f534a});
+  file << json;
+  words({body, 0x004e4942});
+  file.write(reinterpret_cast<const char*>(sheet.vertices.data()), static_cast<std::streamsize>(vertex_bytes));
+  file.write(reinterpret_cast<const char*>(sheet.indices.data()), static_cast<std::streamsize>(index_bytes));
+  close(file, path);
+}
+
 /// The medians and spreads of `runs` runs after one that warms caches; measure() returns the rates of a run.
 template <size_t N, class Measure>
 std::array<Spread, N> repeat(int runs, const Measure& measure) {
@@ -129,16 +159,33 @@ void measure_ply(const std::string& path, int runs, Ingestion& out) {
   out.ply_mb_per_s = read, out.build_mtris_per_s = build;
 }
 
+/// Seconds until the shape of a file is ready to be traced.
+double seconds_to_traceable(const char* shape, const std::string& path) {
+  const ParsedFile file =
+      read_scene_text(shape, fmt::format("{}Shape \"{}\" \"string filename\" \"{}\"\nWorldEnd\n", kHead, shape, path));
+  if (file.worlds.empty()) throw std::runtime_error("the model made for measuring has errors");
+  PlannedWorld planned = plan_world(file.worlds.front(), *file.sources);
+  const double before = file.elapsed.wall + planned.elapsed.wall;
+  const BuiltWorld built = build_world(std::move(planned));
+  if (!built.scene || built.said.has_errors()) throw std::runtime_error("the model made for measuring has errors");
+  return before + built.elapsed.wall;
+}
+
 }  // namespace
 
 Ingestion measure_ingestion(const std::string& folder, const IngestionSettings& settings) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const std::string text = folder + "/ingestion.pbrt", ply = folder + "/ingestion.ply";
+  const std::string text = folder + "/ingestion.pbrt", ply = folder + "/ingestion.ply", glb = folder + "/ingestion.glb";
   Ingestion out;
   write_text(text, settings.text_megabytes);
   measure_text(text, settings.runs, out);
   write_ply(ply, Sheet(700));  // 980,000 triangles
   measure_ply(ply, settings.runs, out);
+  write_glb(glb, Sheet(700));
+  out.glb_over_ply = repeat<1>(settings.runs, [&] {
+    const double of_ply = seconds_to_traceable("plymesh", ply);
+    return std::array{seconds_to_traceable("gltf", glb) / of_ply};
+  })[0];
   return out;
 }
 

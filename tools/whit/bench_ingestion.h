@@ -1,4 +1,4 @@
-// How fast files come in: scene text, PLY meshes, and the ray tracer's structures over them. On one thread.
+// How fast files come in: scene text, PLY meshes, glTF models, and the ray tracer's structures over them. On one thread.
 #pragma once
 
 #include <string>
@@ -14,8 +14,9 @@ struct IngestionSettings {
 
 struct Ingestion {
   double text_megabytes = 0, ply_megabytes = 0, triangles = 0;  ///< What was read and built in each run.
-  Spread text_mb_per_s;      ///< Parsing a scene of inline meshes from a file that the system has in memory.
-  Spread ply_mb_per_s;       ///< Reading a binary little-endian mesh with normals and (u, v), checks included.
+  Spread text_mb_per_s;  ///< Parsing a scene of inline meshes from a file that the system has in memory.
+  Spread ply_mb_per_s;   ///< Reading a binary little-endian mesh with normals and (u, v), checks included.
+  Spread glb_over_ply;   ///< The same mesh as .glb: its time to be traceable by the PLY file's, text and plan included.
   Spread build_mtris_per_s;  ///< Millions of its triangles, from as read to traceable.
 };
 
