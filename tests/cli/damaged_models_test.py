@@ -59,7 +59,7 @@ def document(data):
             return json.loads(data), None
         length = struct.unpack_from("<I", data, 12)[0]
         return json.loads(data[20:20 + length]), data[20 + length:]
-    except ValueError:
+    except (ValueError, struct.error):
         return None
 
 
