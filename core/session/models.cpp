@@ -82,16 +82,16 @@ gltf::Selection selection_of(const ModelChoice& choice) {
 }  // namespace
 
 bool is_model_file(const std::string& path) {
-  // A pipe can be read only once.
-  std::error_code failed;
-  if (!fs::is_regular_file(path, failed)) return false;
-  std::ifstream file(path, std::ios::binary);
-  char magic[4] = {};
-  if (file.read(magic, 4) && std::string_view(magic, 4) == "glTF") return true;
   std::string ending = fs::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  return ending == ".gltf" || ending == ".glb";
+  if (ending == ".gltf" || ending == ".glb") return true;
+  // A pipe can be read only once.
+  std::error_code failed;
+  if (ending == ".pbrt" || !fs::is_regular_file(path, failed)) return false;
+  std::ifstream file(path, std::ios::binary);
+  char magic[4] = {};
+  return file.read(magic, 4) && std::string_view(magic, 4) == "glTF";
 }
 
 std::shared_ptr<const gltf::Model> ModelStore::load(const std::string& path, const std::string& shown, SourcePos where,

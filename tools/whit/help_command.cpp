@@ -20,7 +20,8 @@ namespace {
 // ---- For people ----
 
 void print_overview() {
-  fmt::print("whit renders pbrt-v3 scene files and glTF models with an Embree-accelerated Whitted integrator.\n\ncommands\n");
+  fmt::print(
+      "whit renders pbrt-v3 scene files and glTF models with an Embree-accelerated Whitted integrator.\n\ncommands\n");
   for (const Command& c : commands()) fmt::print("  whit {:<32} {}\n", c.synopsis, c.summary);
   fmt::print("  (each has --help)\n\nplugins (whit help CATEGORY NAME shows parameters)\n");
   std::set<std::string> categories;
