@@ -30,13 +30,15 @@ class AttachedAssets final : public gltf::Assets {
   }
 
  private:
+  /// A picture of several textures has one name: textures that are the same are then one.
   std::string attach(std::shared_ptr<const Attachment> attachment) {
-    const std::string name = fmt::format("{}", attachments_.size());
-    attachments_[name] = std::move(attachment);
-    return gltf::string_param(std::string("string ") + ModelReader::kAttached, name);
+    const auto [named, is_new] = names_.try_emplace(attachment.get(), fmt::format("{}", attachments_.size()));
+    if (is_new) attachments_[named->second] = std::move(attachment);
+    return gltf::string_param(std::string("string ") + ModelReader::kAttached, named->second);
   }
 
   std::map<std::string, std::shared_ptr<const Attachment>>& attachments_;
+  std::map<const Attachment*, std::string> names_;
 };
 
 const PluginInfo& model_plugin() { return *find_plugin("shape", "gltf"); }
