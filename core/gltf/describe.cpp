@@ -18,22 +18,25 @@ namespace {
 class WorldWriter {
  public:
   WorldWriter(const std::shared_ptr<const Model>& model, const WorldOptions& options, Assets& assets)
-      : model_(model), options_(options), assets_(assets), names_(options.prefix), materials_(*model, assets, names_) {}
+      : model_(model),
+        options_(options),
+        assets_(assets),
+        names_(options.prefix),
+        materials_(*model, assets, names_),
+        variant_(options.selection.variant.empty() ? -1 : variant_index(*model, options.selection.variant)) {}
 
   /// "" or what is wrong.
-  std::string write(const std::vector<int>& roots, std::string& text) {
-    if (std::string error = pose_nodes(*model_, options_.selection.time, posed_); !error.empty()) return error;
-    const std::vector<int> nodes = nodes_below(*model_, roots);
+  std::string write(const ShownNodes& shown, std::string& text) {
     std::vector<DrawnMesh> drawn;
     size_t unplaceable = 0;
-    if (std::string error = drawn_meshes(*model_, posed_, nodes, drawn, unplaceable); !error.empty()) return error;
+    if (std::string error = drawn_meshes(*model_, shown, drawn, unplaceable); !error.empty()) return error;
     for (const DrawnMesh& mesh : drawn) {
       if (!is_bent(mesh.pose)) uses_[mesh.mesh] += mesh.to_root.size();
     }
     for (const DrawnMesh& mesh : drawn) {
       for (const Mat4d& to_root : mesh.to_root) place(mesh, to_root);
     }
-    if (options_.lights) write_lights(nodes);
+    if (options_.lights) write_lights(shown);
     if (unshown_ > 0) notes_.insert(fmt::format("{} primitives of points or lines are not shown", unshown_));
     if (unplaceable > 0) notes_.insert(fmt::format("{} meshes are scaled to nothing and not shown", unplaceable));
     text = materials_.statements() + lights_ + objects_ + shapes_;
@@ -49,17 +52,16 @@ class WorldWriter {
  private:
   const Mesh& mesh_of(const DrawnMesh& drawn) const { return model_->meshes[static_cast<size_t>(drawn.mesh)]; }
 
-  void write_lights(const std::vector<int>& nodes) {
-    for (const int node : nodes) {
-      const Mat4d& to_root = posed_.to_root[static_cast<size_t>(node)];
+  void write_lights(const ShownNodes& shown) {
+    for (const int node : shown.nodes) {
+      const Mat4d& to_root = shown.posed.to_root[static_cast<size_t>(node)];
       if (is_placeable(to_root)) lights_ += light_statements(*model_, node, to_root, notes_);
     }
   }
 
   int material_of(const Primitive& primitive) const {
-    const auto variant = static_cast<size_t>(
-        options_.selection.variant.empty() ? 0 : variant_index(*model_, options_.selection.variant));
-    if (options_.selection.variant.empty() || variant >= primitive.variant_material.size()) return primitive.material;
+    const auto variant = static_cast<size_t>(variant_);
+    if (variant_ < 0 || variant >= primitive.variant_material.size()) return primitive.material;
     const int other = primitive.variant_material[variant];
     return other >= 0 ? other : primitive.material;
   }
@@ -124,7 +126,7 @@ class WorldWriter {
   Assets& assets_;
   UniqueNames names_;
   MaterialWriter materials_;
-  PosedNodes posed_;
+  const int variant_;           ///< -1: none.
   std::map<int, size_t> uses_;  ///< How often a mesh is placed as it is.
   std::map<int, std::string> object_names_;
   std::string lights_, objects_, shapes_;
@@ -132,15 +134,23 @@ class WorldWriter {
   int unshown_ = 0;
 };
 
-}  // namespace
-
-std::optional<Description> describe_world(const std::shared_ptr<const Model>& model, const WorldOptions& options,
-                                          Assets& assets, SourcePos where, Diagnostics& diagnostics) {
+/// Selects and poses. False after an error.
+bool find_shown(const Model& model, const Selection& selection, SourcePos where, ShownNodes& out,
+                Diagnostics& diagnostics) {
   std::vector<int> roots;
-  if (!select_roots(*model, options.selection, roots, where, diagnostics)) return std::nullopt;
+  if (!select_roots(model, selection, roots, where, diagnostics)) return false;
+  out.nodes = nodes_below(model, roots);
+  const std::string error = pose_nodes(model, selection.time, out.posed);
+  if (!error.empty()) diagnostics.error(where, model.at(error));
+  return error.empty();
+}
+
+std::optional<Description> describe_nodes(const std::shared_ptr<const Model>& model, const WorldOptions& options,
+                                          const ShownNodes& shown, Assets& assets, SourcePos where,
+                                          Diagnostics& diagnostics) {
   WorldWriter writer(model, options, assets);
   Description out;
-  if (const std::string error = writer.write(roots, out.text); !error.empty()) {
+  if (const std::string error = writer.write(shown, out.text); !error.empty()) {
     diagnostics.error(where, model->at(error));
     return std::nullopt;
   }
@@ -149,21 +159,29 @@ std::optional<Description> describe_world(const std::shared_ptr<const Model>& mo
   return out;
 }
 
+}  // namespace
+
+std::optional<Description> describe_world(const std::shared_ptr<const Model>& model, const WorldOptions& options,
+                                          Assets& assets, SourcePos where, Diagnostics& diagnostics) {
+  ShownNodes shown;
+  if (!find_shown(*model, options.selection, where, shown, diagnostics)) return std::nullopt;
+  return describe_nodes(model, options, shown, assets, where, diagnostics);
+}
+
 std::optional<Description> describe_scene(const std::shared_ptr<const Model>& model, const Selection& selection,
                                           Assets& assets, Diagnostics& diagnostics) {
   WorldOptions options;
   options.selection = selection;
   options.lights = true;
-  std::optional<Description> world = describe_world(model, options, assets, {}, diagnostics);
+  ShownNodes shown;
+  if (!find_shown(*model, selection, {}, shown, diagnostics)) return std::nullopt;
+  std::optional<Description> world = describe_nodes(model, options, shown, assets, {}, diagnostics);
   if (!world) return std::nullopt;
   std::string view;
-  if (!describe_view(*model, selection, view, world->notes, diagnostics)) return std::nullopt;
+  if (!describe_view(*model, selection, shown, view, world->notes, diagnostics)) return std::nullopt;
   const auto is_light = [&](int node) { return model->nodes[static_cast<size_t>(node)].light >= 0; };
-  std::vector<int> roots;
-  select_roots(*model, selection, roots, {}, diagnostics);
-  const std::vector<int> nodes = nodes_below(*model, roots);
   std::string sky;
-  if (std::none_of(nodes.begin(), nodes.end(), is_light)) {
+  if (std::none_of(shown.nodes.begin(), shown.nodes.end(), is_light)) {
     sky = "LightSource \"skybox\"\n";
     world->notes.emplace_back("there are no lights in the file: it stands under a sky, a gradient");
   }

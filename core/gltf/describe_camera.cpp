@@ -6,7 +6,6 @@
 
 #include "core/base/box.h"
 #include "core/base/fastmath.h"
-#include "core/gltf/pose.h"
 #include "core/gltf/select.h"
 #include "core/gltf/statement_text.h"
 
@@ -56,10 +55,10 @@ std::string find_bounds(const Model& model, const Primitive& primitive, const Po
 }
 
 /// The same of all that is drawn. Meshes that nothing bends are looked at once, wherever they are placed.
-std::string find_bounds(const Model& model, const PosedNodes& posed, const std::vector<int>& nodes, Box3d& box) {
+std::string find_bounds(const Model& model, const ShownNodes& shown, Box3d& box) {
   std::vector<DrawnMesh> drawn;
   size_t unplaceable = 0;
-  if (std::string error = drawn_meshes(model, posed, nodes, drawn, unplaceable); !error.empty()) return model.at(error);
+  if (std::string error = drawn_meshes(model, shown, drawn, unplaceable); !error.empty()) return model.at(error);
   std::map<int, Box3d> unbent;
   for (const DrawnMesh& mesh : drawn) {
     const bool bent = is_bent(mesh.pose);
@@ -106,51 +105,53 @@ std::string framing_camera(const Box3d& box, std::vector<std::string>& notes) {
          fmt::format("Camera \"perspective\" \"float fov\" {}\n", kFov);
 }
 
+/// The first of the nodes whose camera is the one that is wanted, or any; -1 where there is none.
+int find_camera(const Model& model, const std::string& name, const ShownNodes& shown) {
+  const int wanted = name.empty() ? -1 : camera_index(model, name);
+  const auto shows = [&](int n) {
+    const Node& node = model.nodes[static_cast<size_t>(n)];
+    // A camera may have the name of its node.
+    const bool meant = name.empty() || node.camera == wanted || (wanted < 0 && node.name == name);
+    return node.camera >= 0 && meant && is_placeable(shown.posed.to_root[static_cast<size_t>(n)]);
+  };
+  const auto found = std::find_if(shown.nodes.begin(), shown.nodes.end(), shows);
+  return found == shown.nodes.end() ? -1 : *found;
+}
+
+/// What cameras there are, by name or else number.
+std::string cameras_there(const Model& model, const ShownNodes& shown) {
+  std::string there;
+  for (const int n : shown.nodes) {
+    const int camera = model.nodes[static_cast<size_t>(n)].camera;
+    if (camera < 0) continue;
+    const std::string& name = model.cameras[static_cast<size_t>(camera)].name;
+    there +=
+        fmt::format("{}{}", there.empty() ? "" : ", ", name.empty() ? fmt::format("{}", camera) : '"' + name + '"');
+  }
+  return there.empty() ? "without --camera one is made that shows all of it" : "there are " + there;
+}
+
 }  // namespace
 
-bool describe_view(const Model& model, const Selection& selection, std::string& text, std::vector<std::string>& notes,
-                   Diagnostics& diagnostics) {
-  const int wanted = selection.camera.empty() ? -1 : camera_index(model, selection.camera);
-  std::vector<int> roots;
-  if (!select_roots(model, selection, roots, {}, diagnostics)) return false;
-  const std::vector<int> nodes = nodes_below(model, roots);
-  PosedNodes posed;
-  std::string error = pose_nodes(model, selection.time, posed);
-  if (!error.empty()) {
-    diagnostics.error({}, model.at(error));
-    return false;
+bool describe_view(const Model& model, const Selection& selection, const ShownNodes& shown, std::string& text,
+                   std::vector<std::string>& notes, Diagnostics& diagnostics) {
+  const int node = find_camera(model, selection.camera, shown);
+  if (node >= 0) {
+    const Node& of = model.nodes[static_cast<size_t>(node)];
+    text = camera_statements(model.cameras[static_cast<size_t>(of.camera)],
+                             shown.posed.to_root[static_cast<size_t>(node)]);
+    return true;
   }
-  const auto shows = [&](int n) {
-    const int camera = model.nodes[static_cast<size_t>(n)].camera;
-    // A camera may have the name of its node.
-    const bool meant = selection.camera.empty() || camera == wanted ||
-                       (wanted < 0 && model.nodes[static_cast<size_t>(n)].name == selection.camera);
-    return camera >= 0 && meant && is_placeable(posed.to_root[static_cast<size_t>(n)]);
-  };
-  const auto node = std::find_if(nodes.begin(), nodes.end(), shows);
-  if (node == nodes.end() && !selection.camera.empty()) {
-    std::string there;
-    for (const int n : nodes) {
-      const int camera = model.nodes[static_cast<size_t>(n)].camera;
-      if (camera < 0) continue;
-      const std::string& name = model.cameras[static_cast<size_t>(camera)].name;
-      there +=
-          fmt::format("{}{}", there.empty() ? "" : ", ", name.empty() ? fmt::format("{}", camera) : '"' + name + '"');
-    }
+  if (!selection.camera.empty()) {
     diagnostics.add({Severity::Error,
                      ErrorClass::Usage,
                      {},
                      fmt::format("{} has no camera \"{}\" in the scene", model.path, selection.camera),
-                     there.empty() ? "without --camera one is made that shows all of it" : "there are " + there});
+                     cameras_there(model, shown)});
     return false;
   }
-  if (node != nodes.end()) {
-    const Node& of = model.nodes[static_cast<size_t>(*node)];
-    text = camera_statements(model.cameras[static_cast<size_t>(of.camera)], posed.to_root[static_cast<size_t>(*node)]);
-    return true;
-  }
   Box3d box;
-  error = find_bounds(model, posed, nodes, box);
+  const std::string error = find_bounds(model, shown, box);
   if (error.empty()) text = framing_camera(box, notes);
   else diagnostics.error({}, error);
   return error.empty();

@@ -222,16 +222,16 @@ std::string read_instances(const Model& model, const GpuInstances& instances, st
 
 }  // namespace
 
-std::string drawn_meshes(const Model& model, const PosedNodes& posed, const std::vector<int>& nodes,
-                         std::vector<DrawnMesh>& out, size_t& unplaceable) {
+std::string drawn_meshes(const Model& model, const ShownNodes& shown, std::vector<DrawnMesh>& out,
+                         size_t& unplaceable) {
   constexpr size_t kMost = 1000000;
   size_t placements = 0;
   unplaceable = 0;
-  for (const int index : nodes) {
+  for (const int index : shown.nodes) {
     const Node& node = model.nodes[static_cast<size_t>(index)];
     if (node.mesh < 0) continue;
     PlacedMesh placed;
-    if (std::string error = place_mesh(model, posed, index, placed); !error.empty()) return error;
+    if (std::string error = place_mesh(model, shown.posed, index, placed); !error.empty()) return error;
     std::vector<Mat4d> instances;
     if (std::string error = read_instances(model, node.instances, instances); !error.empty()) return error;
     if (instances.empty()) instances.emplace_back();

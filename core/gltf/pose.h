@@ -21,6 +21,12 @@ struct PosedNodes {
 /// with the numbers of an animation and its place in the file.
 std::string pose_nodes(const Model& model, std::optional<double> time, PosedNodes& out);
 
+/// The nodes that are shown, parents first, in a model at a time.
+struct ShownNodes {
+  std::vector<int> nodes;
+  PosedNodes posed;
+};
+
 /// Whether a matrix can be inverted. Nodes that are scaled to nothing are there, and not shown.
 bool is_placeable(const Mat4d& m);
 
@@ -36,7 +42,6 @@ struct DrawnMesh {
 
 /// What is drawn of the nodes. A million placements are the most that is shown of a model. "" or what is wrong, with the
 /// place in the file; `unplaceable` counts the others.
-std::string drawn_meshes(const Model& model, const PosedNodes& posed, const std::vector<int>& nodes,
-                         std::vector<DrawnMesh>& out, size_t& unplaceable);
+std::string drawn_meshes(const Model& model, const ShownNodes& shown, std::vector<DrawnMesh>& out, size_t& unplaceable);
 
 }  // namespace whit::gltf
