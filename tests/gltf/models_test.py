@@ -16,6 +16,7 @@ import OpenImageIO as oiio
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import make_models  # noqa: E402
+from pictures import pixels  # noqa: E402
 
 WHIT = os.environ.get("WHIT")
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -26,17 +27,6 @@ FLAGS = {"animation": ["--time", "0.5"], "variants": ["--variant", "sea"], "two_
 
 def whit(*args, cwd=None):
     return subprocess.run([WHIT, *args], capture_output=True, text=True, cwd=cwd, timeout=120)
-
-
-def pixels(path):
-    """All channels of an EXR file as floats, height x width x 3."""
-    picture = oiio.ImageInput.open(path)
-    if not picture:
-        raise RuntimeError(oiio.geterror())
-    try:
-        return picture.read_image(0, 0, 0, 3, oiio.FLOAT)
-    finally:
-        picture.close()
 
 
 def reduced(picture):
@@ -67,6 +57,13 @@ class Folder(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("warning", done.stderr)
         return pixels(out)
+
+    def write(self, name, model):
+        """A model into the folder, as .glb or as .gltf with all of it in the text; its path."""
+        path = os.path.join(self.folder, name)
+        with open(path, "wb") as f:
+            f.write(model.glb() if name.endswith(".glb") else model.gltf(model.data_uri()).encode())
+        return path
 
     def model(self, name):
         return self.render(self.paths[name], *FLAGS.get(name, []))
@@ -216,9 +213,7 @@ WorldEnd
             model.add(make_models.QUAD * 4, at=[0, 0, -1], material=model.material(
                 pbrMetallicRoughness={"baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0}, emissiveFactor=[1, 1, 1],
                 extensions={"KHR_materials_specular": {"specularFactor": 0}}))
-            path = os.path.join(self.folder, "faded.glb")
-            with open(path, "wb") as f:
-                f.write(model.glb())
+            path = self.write("faded.glb", model)
             middle = self.render(path)[SIDE // 4:SIDE * 3 // 4, SIDE // 4:SIDE * 3 // 4].mean((0, 1))
             np.testing.assert_allclose(middle, (1, 0.85, 0.775), atol=0.02)  # a coin for each of 25,000 pixels: 0.003
 
@@ -230,9 +225,7 @@ WorldEnd
         model.light("directional", rotation=[0, -math.sin(math.pi / 6), 0, math.cos(math.pi / 6)])
         model.add(normals=[[0, 0, 1]] * 4, uv=make_models.QUAD_UV, material=model.material(
             **make_models.pbr((1, 1, 1)), normalTexture={"index": texture}))
-        path = os.path.join(self.folder, "behind.glb")
-        with open(path, "wb") as f:
-            f.write(model.glb())
+        path = self.write("behind.glb", model)
         self.assertEqual(self.render(path).max(), 0)
 
     def test_variants_change_materials(self):
@@ -313,8 +306,7 @@ class InScenesTest(Folder):
         model = make_models.instances()
         roots = model.doc["scenes"][0]["nodes"]
         model.doc["scenes"][0]["nodes"] = [model.node(root=False, children=list(roots), translation=[0.25, 0.5, 0])]
-        with open(os.path.join(self.folder, "moved.glb"), "wb") as f:
-            f.write(model.glb())
+        self.write("moved.glb", model)
         moved = self.scene(HEAD + light + 'Shape "gltf" "string filename" "moved.glb"\nWorldEnd\n')
         placed = self.scene(HEAD + light + 'Translate 0.25 0.5 0\nShape "gltf" "string filename" "instances.glb"\nWorldEnd\n')
         self.assertLess((np.abs(moved - placed).max(-1) > 1e-4).mean(), 0.001)
@@ -327,8 +319,7 @@ class InScenesTest(Folder):
     def test_a_warning_is_said_once_for_a_file(self):
         model = make_models.triangles_u16()
         model.use("ACME_hologram")
-        with open(os.path.join(self.folder, "warns.gltf"), "w") as f:
-            f.write(model.gltf(model.data_uri()))
+        self.write("warns.gltf", model)
         done = whit("check", self.write_scene('LightSource "infinite"\n' + 3 * 'Shape "gltf" "string filename" "warns.gltf"\nTranslate 0 3 0\n'))
         self.assertEqual(done.stderr.count("ACME_hologram"), 1, done.stderr)
 
@@ -449,9 +440,7 @@ class DoorsTest(Folder):
             for thing in model.doc[kind]:
                 thing["name"] = nasty
         model.doc["extensions"]["KHR_lights_punctual"]["lights"][0]["name"] = nasty
-        path = os.path.join(self.folder, "nasty.glb")
-        with open(path, "wb") as f:
-            f.write(model.glb())
+        path = self.write("nasty.glb", model)
         expected = self.model("base_color_texture")
         self.assertTrue(np.array_equal(self.render(path), expected))
         scene = os.path.join(self.folder, "nasty.pbrt")
@@ -463,9 +452,7 @@ class DoorsTest(Folder):
         mesh = 0
         for scale in ([0, 0, 0], [1, 0, 1]):
             model.node(mesh=mesh, scale=scale)
-        path = os.path.join(self.folder, "nothing.glb")
-        with open(path, "wb") as f:
-            f.write(model.glb())
+        path = self.write("nothing.glb", model)
         done = whit(path, "--quick", "-o", os.path.join(self.folder, "n.exr"))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("2 meshes are scaled to nothing", done.stderr)
@@ -477,9 +464,7 @@ class DoorsTest(Folder):
         model.use("EXT_mesh_gpu_instancing")
         count = model.put("accessors", {"componentType": make_models.FLOAT, "count": 2000000, "type": "VEC3"})
         model.node(mesh=mesh, extensions={"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": count}}})
-        path = os.path.join(self.folder, "bomb.glb")
-        with open(path, "wb") as f:
-            f.write(model.glb())
+        path = self.write("bomb.glb", model)
         done = whit(path, "--quick", "-o", os.path.join(self.folder, "n.exr"))
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("bomb.glb: /nodes/1: places meshes more than 1000000 times", done.stderr)
@@ -513,8 +498,7 @@ class DoorsTest(Folder):
         os.makedirs(folder)
         model = make_models.base_color_texture()
         model.doc["images"][0] = {"uri": "missing.png"}
-        with open(os.path.join(self.folder, "lacks.gltf"), "w") as f:
-            f.write(model.gltf(model.data_uri()))
+        self.write("lacks.gltf", model)
         done = whit("import", os.path.join(self.folder, "lacks.gltf"), "-o", os.path.join(folder, "lacks.pbrt"))
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertIn("missing.png", done.stderr)
@@ -524,9 +508,7 @@ class DoorsTest(Folder):
         model = make_models.triangles_u16()
         model.doc["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 17
         model.doc["nodes"][0]["children"] = [0]
-        path = os.path.join(self.folder, "wrong.gltf")
-        with open(path, "w") as f:
-            f.write(model.gltf(model.data_uri()))
+        path = self.write("wrong.gltf", model)
         done = whit(path, "--quick")
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("wrong.gltf: /meshes/0/primitives/0/attributes/POSITION: ", done.stderr)
@@ -555,9 +537,7 @@ class DoorsTest(Folder):
         for required, code in ((True, 3), (False, 0)):
             model = make_models.triangles_u16()
             model.use("ACME_hologram", required=required)
-            path = os.path.join(self.folder, "hologram.gltf")
-            with open(path, "w") as f:
-                f.write(model.gltf(model.data_uri()))
+            path = self.write("hologram.gltf", model)
             done = whit(path, "--quick", "-o", os.path.join(self.folder, "o.exr"))
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertEqual(done.stderr.count("ACME_hologram"), 2 if required else 1, done.stderr)  # the error and its remedy

@@ -15,7 +15,9 @@ import tempfile
 import unittest
 
 import numpy as np
-import OpenImageIO as oiio
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from pictures import pixels  # noqa: E402
 
 WHIT = os.path.abspath(os.environ.get("WHIT", "build/release/whit"))
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
@@ -50,15 +52,6 @@ def render(path, folder):
     return done.returncode, done.stderr.replace(MODELS + "/", "")
 
 
-def read(path):
-    """Not by an ImageBuf, which may have the pixels of the picture that was there before."""
-    picture = oiio.ImageInput.open(path)
-    try:
-        return picture.read_image(0, 0, 0, 3, oiio.FLOAT)
-    finally:
-        picture.close()
-
-
 def models():
     return sorted(os.path.relpath(p, MODELS) for ending in ("gltf", "glb") for p in glob.glob(f"{MODELS}/**/*.{ending}", recursive=True))
 
@@ -87,7 +80,7 @@ class PublicModelsTest(unittest.TestCase):
                         self.assertIn(reason, said)
                     else:
                         self.assertEqual(code, 0, said)
-                        picture = read(os.path.join(folder, "out.exr"))
+                        picture = pixels(os.path.join(folder, "out.exr"))
                         self.assertTrue(np.isfinite(picture).all())
                         # The sky is a gradient of some steps a pixel; edges of things are more.
                         self.assertGreater(np.abs(np.diff(picture, axis=1)).max(), 0 if name.split("/")[-1] in EMPTY else 0.05)

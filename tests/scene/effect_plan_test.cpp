@@ -253,13 +253,14 @@ TEST(EffectPlan, TexturesOfTexturesThatAreNotAskedForAreNotLive) {
   EXPECT_EQ(live("\"scale\" \"texture tex1\" \"a\" \"rgb tex2\" [0 0 0]"), (Live{0, 0, 0}));  // black
 }
 
-TEST(EffectPlan, AMixHasTheBumpMapOfItsFirstMember) {
-  const auto plan = [](const std::string& order) {
-    return Planned(scene(R"(Texture "waves" "float" "windy"
+/// A mix has the map of its first member, be it a bump or a normal map: `texture` is its statement's beginning, `map` the
+/// material that wears it.
+void expect_map_of_first_member(const std::string& texture, const std::string& map) {
+  const auto plan = [&](const std::string& order) {
+    return Planned(scene("Texture \"waves\" " + texture + R"(
         MakeNamedMaterial "flat" "string type" "matte"
-        MakeNamedMaterial "rough" "string type" "matte" "texture bumpmap" "waves"
-        Material "mix" )" +
-                         order + " Shape \"disk\""))
+        MakeNamedMaterial "rough" "string type" )" +
+                         map + " Material \"mix\" " + order + " Shape \"disk\""))
         .plan;
   };
   const EffectPlan flat = plan(R"("string namedmaterial1" "flat" "string namedmaterial2" "rough")");
@@ -268,6 +269,14 @@ TEST(EffectPlan, AMixHasTheBumpMapOfItsFirstMember) {
   const EffectPlan rough = plan(R"("string namedmaterial1" "rough" "string namedmaterial2" "flat")");
   EXPECT_TRUE(rough.live(Effect::Bump));
   EXPECT_EQ(rough.texture_live, std::vector<uint8_t>{3});
+}
+
+TEST(EffectPlan, AMixHasTheBumpMapOfItsFirstMember) {
+  expect_map_of_first_member(R"("float" "windy")", R"("matte" "texture bumpmap" "waves")");
+}
+
+TEST(EffectPlan, AMixHasTheNormalMapOfItsFirstMember) {
+  expect_map_of_first_member(R"("spectrum" "windy")", R"("metallicroughness" "texture normalmap" "waves")");
 }
 
 TEST(EffectPlan, ANormalMapIsABumpMap) {
@@ -286,23 +295,6 @@ TEST(EffectPlan, ANormalMapIsABumpMap) {
   const Planned off(scene(maps + "\"texture normalmap\" \"n\" Shape \"disk\""), Planned::Warnings::Failures, flat);
   EXPECT_FALSE(off.plan.live(Effect::Bump));
   EXPECT_EQ(off.plan.texture_live, std::vector<uint8_t>{0});
-}
-
-TEST(EffectPlan, AMixHasTheNormalMapOfItsFirstMember) {
-  const auto plan = [](const std::string& order) {
-    return Planned(scene(R"(Texture "waves" "spectrum" "windy"
-        MakeNamedMaterial "flat" "string type" "matte"
-        MakeNamedMaterial "rough" "string type" "metallicroughness" "texture normalmap" "waves"
-        Material "mix" )" +
-                         order + " Shape \"disk\""))
-        .plan;
-  };
-  const EffectPlan flat = plan(R"("string namedmaterial1" "flat" "string namedmaterial2" "rough")");
-  EXPECT_FALSE(flat.called_for.has(Effect::Bump));
-  EXPECT_EQ(flat.texture_live, std::vector<uint8_t>{0});
-  const EffectPlan rough = plan(R"("string namedmaterial1" "rough" "string namedmaterial2" "flat")");
-  EXPECT_TRUE(rough.live(Effect::Bump));
-  EXPECT_EQ(rough.texture_live, std::vector<uint8_t>{3});
 }
 
 TEST(EffectPlan, WhatNobodyNeedsIsNotLive) {
