@@ -4,13 +4,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <system_error>
+#include <vector>
+
+#include "core/base/ply_write.h"
 
 namespace whit {
 
@@ -70,43 +73,10 @@ bool needs_double(const std::vector<double>& positions) {
   return !(error <= 1e-6 * extent);
 }
 
-template <class T>
-void put(std::string& out, T value) {
-  char bytes[sizeof(T)];
-  std::memcpy(bytes, &value, sizeof(T));
-  out.append(bytes, sizeof(T));
-}
-
-std::string header(const MeshData& mesh, bool doubles) {
-  const std::string real = doubles ? "double" : "float";
-  std::string out = "ply\nformat binary_";
-  out += std::endian::native == std::endian::little ? "little" : "big";
-  out += "_endian 1.0\nelement vertex " + std::to_string(mesh.positions->numbers().size() / 3) + "\n";
-  for (const char* name : {"x", "y", "z"}) out += "property " + real + " " + name + "\n";
-  if (mesh.normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
-  if (mesh.uv) out += "property float u\nproperty float v\n";
-  out += "element face " + std::to_string(mesh.indices->integers().size() / 3) + "\n";
-  return out + "property list uint8 int vertex_indices\nend_header\n";
-}
-
-std::string body(const MeshData& mesh, bool doubles) {
-  std::string out;
-  const auto put_floats = [&out](const Parameter* p, size_t first, size_t count) {
-    for (size_t i = 0; p && i < count; ++i) put(out, static_cast<float>(p->numbers()[first + i]));
-  };
-  const std::vector<double>& positions = mesh.positions->numbers();
-  for (size_t v = 0; v < positions.size() / 3; ++v) {
-    for (size_t i = 0; doubles && i < 3; ++i) put(out, positions[3 * v + i]);
-    if (!doubles) put_floats(mesh.positions, 3 * v, 3);
-    put_floats(mesh.normals, 3 * v, 3);
-    put_floats(mesh.uv, 2 * v, 2);
-  }
-  const std::vector<int32_t>& indices = mesh.indices->integers();
-  for (size_t i = 0; i < indices.size(); ++i) {
-    if (i % 3 == 0) put(out, uint8_t{3});
-    put(out, indices[i]);
-  }
-  return out;
+/// Rounded; none of a parameter that is not there.
+std::vector<float> to_floats(const Parameter* p) {
+  if (!p) return {};
+  return {p->numbers().begin(), p->numbers().end()};
 }
 
 /// Whether a file holds exactly `data`.
@@ -130,8 +100,11 @@ bool can_export_mesh(const Statement& statement) {
 
 std::string mesh_as_ply(const Statement& statement) {
   const MeshData mesh = mesh_data(statement);
-  const bool doubles = needs_double(mesh.positions->numbers());
-  return header(mesh, doubles) + body(mesh, doubles);
+  const std::vector<double>& positions = mesh.positions->numbers();
+  const std::vector<int32_t>& indices = mesh.indices->integers();
+  const std::vector<float> normals = to_floats(mesh.normals), uvs = to_floats(mesh.uv);
+  const std::array<PlyColumns, 2> columns{{{"nx ny nz", 3, normals}, {"u v", 2, uvs}}};
+  return write_ply(positions, needs_double(positions), columns, std::vector<uint32_t>(indices.begin(), indices.end()));
 }
 
 NewFile write_new_file(const std::string& path, const std::string& data, std::string& problem) {
