@@ -4,6 +4,8 @@
 
 #include <cstring>
 
+#include "core/base/plain_text.h"
+
 namespace whit::gltf {
 namespace {
 
@@ -72,17 +74,6 @@ int nesting_of(std::string_view json) {
   return deepest;
 }
 
-/// The parser's message without its prefixes: "parse error at line 3, column 7: ...".
-std::string shortened(const std::string& what) {
-  const size_t end = what.find("] ");
-  std::string text = end == what.npos ? what : what.substr(end + 2);
-  constexpr size_t kMost = 300;
-  if (text.size() > kMost) text = text.substr(0, kMost) + "...";
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 32 || static_cast<unsigned char>(c) > 126) c = '?';
-  return text;
-}
-
 bool parse_json(std::string_view json, Problems& problems, Json& out) {
   if (json.substr(0, 3) == "\xef\xbb\xbf") json.remove_prefix(3);
   // Some files pad with what the specification does not allow.
@@ -100,7 +91,7 @@ bool parse_json(std::string_view json, Problems& problems, Json& out) {
   try {
     out = Json::parse(json.begin(), json.end());
   } catch (const std::exception& e) {
-    problems.error({}, "its JSON is not right: " + shortened(e.what()));
+    problems.error({}, "its JSON is not right: " + json_message(e.what()));
     return false;
   }
   if (!out.is_object()) return problems.error({}, "its JSON is no object"), false;

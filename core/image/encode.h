@@ -24,4 +24,7 @@ void write_exr(AtomicFile& file, const OutputImage& image, bool full_float);
 /// The bytes of a PNG file. Throws std::runtime_error with the library's reason.
 std::vector<unsigned char> encode_png(const DisplayPixels& pixels);
 
+/// The bytes of a JPEG file, of 8 bits, for pages: write_image() knows more. Throws like encode_png().
+std::vector<unsigned char> encode_jpeg(const DisplayPixels& pixels, int quality);
+
 }  // namespace whit
