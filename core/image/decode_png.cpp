@@ -112,6 +112,12 @@ class Unpacker {
   std::array<uint8_t, 256> grey_{};
 };
 
+// Four digits undo the rounding in the file: 45455 is meant to be 1 / 2.2.
+std::string space_of_power(uint32_t power) {
+  const std::string gamma = fmt::format("{:.4g}", 100000.0 / power);
+  return gamma == "1" ? "linear" : "gamma=" + gamma;
+}
+
 class PngRows : public PictureRows {
  public:
   explicit PngRows(const PictureFile& file) : stream_(file), unpacker_(stream_) {
@@ -149,6 +155,10 @@ class PngRows : public PictureRows {
     if (h.colour == PngHeader::GreyAlpha) channels = {"Y", "A"};
     if (h.colour == PngHeader::RgbAlpha || stream_.has_palette_alpha || !stream_.clear.empty()) channels.push_back("A");
     set_header(info, h.width, h.height, wide() ? SampleFormat::UInt16 : SampleFormat::UInt8, std::move(channels));
+    if (stream_.power > 0) {
+      info.metadata["oiio:ColorSpace"] = space_of_power(stream_.power);
+      info.metadata["png:gAMA"] = std::to_string(stream_.power);
+    }
   }
 
   const uint8_t* next_of_stream() {

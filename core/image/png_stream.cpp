@@ -114,7 +114,7 @@ void PngStream::read_header() {
 
 // On to the first chunk of pixels, with the palette on the way.
 void PngStream::find_pixels() {
-  bool has_palette = false;
+  bool has_palette = false, has_space = false;
   for (;;) {
     const Chunk chunk = begin_chunk();
     if (is(chunk.type, "IDAT")) {
@@ -136,6 +136,13 @@ void PngStream::find_pixels() {
       palette_alpha.fill(255);
       std::copy(alphas.begin(), alphas.end(), palette_alpha.begin());
       has_palette_alpha = true;
+    } else if (is(chunk.type, "sRGB") || is(chunk.type, "iCCP")) {
+      // These go before gAMA, wherever they are.
+      has_space = true;
+      power = 0;
+      skip_chunk(chunk);
+    } else if (is(chunk.type, "gAMA") && chunk.length == 4 && !has_space) {
+      power = word(small_chunk(chunk, 4).data());
     } else if ((chunk.type[0] & 0x20) == 0) {
       fail("it has a critical chunk that PNG does not have");
     } else {
@@ -167,6 +174,12 @@ void PngStream::finish() {
     left_ -= n;
   }
   end_chunk();
+  // What comes behind is of no use here, but a file without its end has been cut off.
+  for (;;) {
+    const Chunk chunk = begin_chunk();
+    if (is(chunk.type, "IEND")) return end_chunk();
+    skip_chunk(chunk);
+  }
 }
 
 void PngStream::read(uint8_t* to, size_t n) {

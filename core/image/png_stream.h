@@ -46,6 +46,7 @@ class PngStream {
   std::array<uint8_t, 3 * 256> palette{};    ///< Colours; black where the file has none.
   std::array<uint8_t, 256> palette_alpha{};  ///< Of the colours, where `has_palette_alpha`.
   bool has_palette_alpha = false;
+  uint32_t power = 0;      ///< That made numbers of light, 100000 times (gAMA), where that is all the file says; or 0.
   std::vector<int> clear;  ///< The numbers of the pixels that are transparent, where others are not; or empty.
 
  private:

@@ -64,6 +64,8 @@ std::array<float, 256> byte_values(bool gamma) {
 bool default_gamma(const std::string& path, const ImageInfo& info) {
   const std::string extension = lower_case(std::filesystem::path(path).extension().string());
   if (extension == ".png" || extension == ".tga") return true;
+  // pbrt-v3 and glTF do not look at it, so a PNG of another name, or of none, must not depend on it either.
+  if (info.metadata.count("png:gAMA")) return true;
   if (info.format == SampleFormat::Half || info.format == SampleFormat::Float) return false;
   // Of all names of colour spaces, those with a linear scale have it in their name; the curves of the others (Rec709 of
   // .ppm files, Adobe RGB, Display P3) are nearer to sRGB's than to none.

@@ -232,6 +232,40 @@ TEST(DecodePng, what_is_damaged_is_an_error) {
   }
 }
 
+TEST(DecodePng, what_gamma_says_where_nothing_goes_before_it) {
+  const auto gamma = [](uint32_t power) { return chunk("gAMA", word(power)); };
+  const std::string srgb = chunk("sRGB", std::string(1, '\0')), profile = chunk("iCCP", "x");
+  const auto space = [](int bits, int type, const std::string& chunks) {
+    const std::string whole = png_file(random_png(3, 2, bits, type), false);  // 8 bytes of signature, 25 of IHDR
+    const std::string path = write_temp("gamma.png", whole.substr(0, 33) + chunks + whole.substr(33));
+    return open_png(path)->info.metadata.at("oiio:ColorSpace");
+  };
+  for (const auto& [bits, type] : {std::pair{8, 2}, {16, 2}, {8, 3}, {2, 3}, {1, 0}, {16, 4}, {8, 6}}) {
+    const auto of = [&, b = bits, t = type](const std::string& chunks) { return space(b, t, chunks); };
+    EXPECT_EQ(of(""), "sRGB");
+    EXPECT_EQ(of(gamma(100000)), "linear");
+    EXPECT_EQ(of(gamma(45455)), "gamma=2.2");
+    EXPECT_EQ(of(gamma(55556)), "gamma=1.8");
+    EXPECT_EQ(of(gamma(50000)), "gamma=2");
+    EXPECT_EQ(of(gamma(0)), "sRGB");  // means nothing
+    EXPECT_EQ(of(chunk("gAMA", "ab")), "sRGB");
+    for (const std::string& first : {srgb, profile}) {
+      EXPECT_EQ(of(first + gamma(100000)), "sRGB");
+      EXPECT_EQ(of(gamma(100000) + first), "sRGB");
+    }
+    EXPECT_EQ(of(chunk("cICP", std::string("\x01\x08\0\x01", 4))), "sRGB");
+  }
+}
+
+TEST(DecodePng, what_is_cut_off_is_an_error) {
+  const std::string whole = png_file(random_png(5, 4, 8, 2), false) + "more";
+  for (size_t part = 0; part + 4 < whole.size(); ++part) {
+    const std::string path = write_temp("cut.png", whole.substr(0, part));
+    EXPECT_NE(error_of([&] { numbers_of(*open_png(path)); }), "") << part;
+  }
+  EXPECT_EQ(error_of([&] { numbers_of(*open_png(write_temp("long.png", whole))); }), "");  // as all readers have it
+}
+
 TEST(DecodePng, headers_that_cannot_be_are_errors) {
   const auto error = [](PngPicture p, int interlace = 0) {
     std::string bytes = png_file(p, false);

@@ -50,6 +50,10 @@ TEST(Texels, default_gamma_is_for_png_tga_and_what_else_is_srgb) {
     EXPECT_TRUE(of(name, k16, profile("Adobe RGB (1998)"))) << name;
     EXPECT_FALSE(of(name, k8, profile("Linear RGB Profile"))) << name;
   }
+  // A PNG whose gAMA says "linear", whatever its name.
+  for (const char* name : {"a.png", "a", "a.jpg"})
+    for (const SampleFormat format : {k8, k16})
+      EXPECT_TRUE(of(name, format, {{"oiio:ColorSpace", "linear"}, {"png:gAMA", "100000"}})) << name;
   for (const char* name : {"a.exr", "a.pfm", "a.png.exr", "a.hdr", "a.tif"}) {
     EXPECT_FALSE(of(name, SampleFormat::Half)) << name;
     EXPECT_FALSE(of(name, SampleFormat::Float)) << name;

@@ -10,6 +10,9 @@ std::unique_ptr<PictureRows> oiio_open(const PictureFile& file);
 bool is_webp(const PictureFile& picture);
 std::unique_ptr<PictureRows> open_webp(const PictureFile& file);
 
+/// That a file is shorter than its header says, where OpenImageIO does not notice (DPX), or "".
+std::string length_problem(const PictureFile& picture);
+
 std::vector<unsigned char> oiio_encode(const DisplayPixels& pixels, const std::string& format, int jpeg_quality);
 
 }  // namespace whit

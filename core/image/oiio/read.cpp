@@ -50,6 +50,11 @@ void copy_header(const OIIO::ImageSpec& spec, ImageInfo& info) {
   for (const auto& attribute : spec.extra_attribs) info.metadata[attribute.name().string()] = attribute.get_string();
 }
 
+// OpenImageIO may have a line for each row of the picture.
+std::string pixel_problem(const std::string& text) {
+  return fmt::format("its pixels are cut off or damaged: {}", text.substr(0, text.find('\n')));
+}
+
 std::string header_problem(const OIIO::ImageSpec& spec) {
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0) return "it has no pixels";
   if (spec.depth > 1) return "it is a volume, not a picture";
@@ -97,6 +102,8 @@ class OiioRows : public PictureRows {
     if (std::string problem = header_problem(spec); !problem.empty()) throw std::runtime_error(problem);
     copy_header(spec, info);
     if (std::string problem = size_problem(file, info); !problem.empty()) throw std::runtime_error(problem);
+    if (std::string problem = length_problem(file); !problem.empty()) throw std::runtime_error(problem);
+    input_->geterror();  // of headers' entries that no pixel depends on
     row_ = static_cast<size_t>(info.width) * info.channels;
     const size_t rows = kStripBytes / (row_ * sizeof(float)) / 256 * 256;
     strip_height_ = spec.tile_width > 0 ? spec.tile_height : static_cast<int>(std::max(size_t{256}, rows));
@@ -119,6 +126,9 @@ class OiioRows : public PictureRows {
     return spec.image_bytes(true) + row_ * strip_height_ * sizeof(float);
   }
 
+  // The header's "oiio:subimages" is not there for pages of TIFF.
+  bool has_more_pictures() override { return input_->seek_subimage(1, 0); }
+
  private:
   static constexpr size_t kStripBytes = size_t{16} << 20;
 
@@ -137,7 +147,8 @@ class OiioRows : public PictureRows {
                                                                spec.z + 1, 0, spec.nchannels, type, strip.data())
                                           : input_->read_scanlines(0, 0, y + first, y + end, spec.z, 0, spec.nchannels,
                                                                    type, strip.data());
-    if (!good) throw std::runtime_error(input_->geterror());
+    // The reader of TIFF says that all went well where strips of a file that is cut off are missing, but keeps the error.
+    if (!good || input_->has_error()) throw std::runtime_error(pixel_problem(input_->geterror()));
     if constexpr (std::is_same_v<Number, float>) divide_exactly(strip);
   }
 
