@@ -27,6 +27,9 @@ class PictureRows {
   /// The most memory that reading takes.
   virtual size_t memory() const = 0;
 
+  /// Whether the file holds other pictures behind this one, such as pages. Ends the reading of rows.
+  virtual bool has_more_pictures() { return false; }
+
   ImageInfo info;             ///< What the header says; the picture has a pixel at least.
   bool bottom_first = false;  ///< The last row comes first, the first last.
 };
