@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/color/srgb.h"
+
 namespace whit {
 namespace {
 

@@ -3,18 +3,7 @@
 
 #include <OpenColorIO/OpenColorIO.h>
 
-#include "core/base/fastmath.h"
-
 namespace whit {
-
-/// The exact sRGB curve of IEC 61966-2-1 as pbrt-v3 has it, clamped to [0, 1]: 12.92 v up to 0.0031308, else
-/// 1.055 v^(1/2.4) - 0.055. NaN gives 0.
-inline float srgb_encode(float v) {
-  const float curve = 1.055f * pow_of(v, 1.0f / 2.4f) - 0.055f;
-  const float below_one = v <= 0.0031308f ? 12.92f * v : curve;
-  const float clamped = v >= 1 ? 1.0f : below_one;
-  return v > 0 ? clamped : 0.0f;
-}
 
 /// Linear Rec.709 as scene_linear, the display "sRGB" with the views "sRGB", "ACES SDR" and "exposure"; the last uses
 /// `exposure` in [0, 1). May throw OpenColorIO's exceptions.

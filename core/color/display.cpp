@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/color/builtin_config.h"
+#include "core/color/srgb.h"
 
 namespace whit {
 
