@@ -13,8 +13,8 @@
 #include "core/accuracy/cost_words.h"
 #include "core/accuracy/cost_worst.h"
 #include "core/accuracy/estimate.h"
-#include "core/accuracy/flip.h"
 #include "core/accuracy/measures.h"
+#include "core/compare/flip.h"
 #include "core/plugin/registry.h"
 
 namespace whit {
@@ -89,14 +89,15 @@ class Study {
     mark_pareto(report().settings);
   }
 
-  /// What judging the pictures of a setting takes, most of which is FLIP, by doing it with a black one. Writing them down
-  /// takes as long.
+  /// What judging the pictures of a setting takes, most of which is FLIP, by doing it with a black one and a white one (of
+  /// equal ones it takes less). Writing them down takes as long.
   double seconds_of_judging() const {
     const Stopwatch watch;
     const Vec2i size = out_.report.resolution;
     std::vector<float> black(3 * static_cast<size_t>(size.x) * static_cast<size_t>(size.y));
     world_.output.display->apply(black.data(), black.size() / 3);
-    flip(black, black, size.x, size.y);
+    const std::vector<float> white(black.size(), 1.0f);
+    flip(black, white, size.x, size.y);
     return 1.5 * watch.elapsed().wall;
   }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/accuracy/estimate.h"
-#include "core/accuracy/flip.h"
 #include "core/accuracy/measures.h"
+#include "core/compare/flip.h"
 
 namespace whit {
 namespace {
@@ -48,7 +48,8 @@ void CostJudge::judge(std::span<const Picture> pictures, CostSetting& setting, d
   setting.relmse = relative_mse(first, reference);
   setting.quantile95 = error_quantile95(first, reference);
   setting.share_2_255 = share_over_2_255(display, shown_);
-  setting.flip = flip(shown_, display, levels_.reference.width(), levels_.reference.height()).mean;
+  constexpr double kPixelsPerDegree = 67;  // As docs/accuracy.md says.
+  setting.flip = flip(shown_, display, levels_.reference.width(), levels_.reference.height(), kPixelsPerDegree).mean;
 }
 
 }  // namespace whit

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/accuracy/measures.h"
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 namespace whit {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 namespace whit {
 namespace {

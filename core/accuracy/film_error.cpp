@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/accuracy/measures.h"
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 namespace whit {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/accuracy/estimate.h"
 #include "core/accuracy/report_axis.h"
 #include "core/accuracy/report_words.h"
+#include "core/base/plain_text.h"
 
 namespace whit {
 namespace {

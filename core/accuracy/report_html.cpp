@@ -9,6 +9,8 @@
 #include "core/accuracy/report_picture.h"
 #include "core/accuracy/report_style.h"
 #include "core/accuracy/report_words.h"
+#include "core/base/plain_text.h"
+#include "core/compare/page_style.h"
 
 namespace whit {
 namespace {
@@ -21,8 +23,8 @@ std::string head(const CostReport& report) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n<title>What accuracy "
       "costs: "
-      "{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n",
-      html_text(report.scene), kReportStyle);
+      "{}</title>\n<style>{}{}</style>\n</head>\n<body>\n<main>\n",
+      html_text(report.scene), kPageStyle, kReportStyle);
   out +=
       fmt::format("<header>\n<h1>What accuracy costs in time</h1>\n<p class=\"scene\">{}</p>\n<p>{}</p>\n<p>{}</p>\n",
                   html_text(report.scene),

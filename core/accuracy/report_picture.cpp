@@ -4,24 +4,12 @@
 #include <array>
 #include <cmath>
 
-#include "core/image/encode.h"
+#include "core/image/data_address.h"
 
 namespace whit {
 namespace {
 
 using Colour = std::array<double, 3>;
-
-std::string base64(const std::vector<unsigned char>& bytes) {
-  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned bits = 0;
-    for (size_t k = 0; k < 3; ++k) bits = bits << 8 | (i + k < bytes.size() ? bytes[i + k] : 0u);
-    for (size_t k = 0; k < 4; ++k) out += i + k <= bytes.size() ? kDigits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return out;
-}
 
 bool is_empty(const CostImage& image) {
   return image.width <= 0 || image.height <= 0 ||
@@ -57,7 +45,7 @@ std::string address_of(const CostImage& image, int most_width, const Of& of) {
       const Colour colour = of(Block{x, y, std::min(x + step, image.width), std::min(y + step, image.height)});
       for (double c : colour) pixels.bytes.push_back(static_cast<unsigned char>(std::lround(c * 255)));
     }
-  return "data:image/png;base64," + base64(encode_png(pixels));
+  return png_address(pixels);
 }
 
 // Black, violet, red, orange, pale yellow: as bright as the value, on paper too.

@@ -5,23 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/plain_text.h"
+
 namespace whit {
-
-std::string three_digits(double value) {
-  if (!std::isfinite(value)) return "unknown";
-  if (value == 0) return "0";
-  // Rounding first: 9.996 is 10.0, not 10.00.
-  const double scale = std::pow(10.0, 2 - std::floor(std::log10(std::abs(value))));
-  const double rounded = std::round(value * scale) / scale;
-  const int decimals = std::max(0, 2 - static_cast<int>(std::floor(std::log10(std::abs(rounded)) + 1e-9)));
-  return fmt::format("{:.{}f}", rounded, decimals);
-}
-
-std::string percent_text(double share) {
-  return std::isfinite(share) ? three_digits(share * 100) + " %" : three_digits(share);
-}
-
-std::string signed_percent_text(double share) { return fmt::format("{}{}", share > 0 ? "+" : "", percent_text(share)); }
 
 namespace {
 
@@ -77,58 +63,6 @@ std::string setting_name(const CostSetting& setting) {
   if (setting.knob == "samples") return fmt::format("{} samples", setting.samples);
   return one_line(fmt::format("{} {}, {} samples", setting.knob, setting.value, setting.samples));
 }
-
-namespace {
-
-// How many bytes the UTF-8 character at the start of the text has; 0 where there is none.
-size_t character_length(std::string_view text) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const size_t length = first >= 0xf5 ? 0 : first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : first >= 0xc2 ? 2 : 0;
-  if (length == 0 || length > text.size()) return 0;
-  for (size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  // Characters spelt longer than needed, halves of surrogate pairs, and what is beyond Unicode.
-  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f)) return 0;
-  if ((first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f)) return 0;
-  return length;
-}
-
-std::string_view escaped(std::string_view character) {
-  if (character == "<") return "&lt;";
-  if (character == ">") return "&gt;";
-  if (character == "&") return "&amp;";
-  if (character == "\"") return "&quot;";
-  if (character == "'") return "&#39;";
-  return character;
-}
-
-// The text, each character of it as `of` says.
-template <class Of>
-std::string each_character(std::string_view text, const Of& of) {
-  std::string out;
-  for (std::string_view rest = text; !rest.empty();) {
-    const size_t length = character_length(rest);
-    out += length == 0 ? std::string_view("?") : of(rest.substr(0, length));
-    rest.remove_prefix(std::max<size_t>(1, length));
-  }
-  return out;
-}
-
-// Below a space, "delete", and U+0080 to U+009F, which terminals obey too.
-bool is_control(std::string_view character) {
-  const auto byte = [&](size_t i) { return static_cast<unsigned char>(character[i]); };
-  return byte(0) < 0x20 || byte(0) == 0x7f || (byte(0) == 0xc2 && byte(1) < 0xa0);
-}
-
-}  // namespace
-
-std::string one_line(std::string_view text) {
-  return each_character(text, [](std::string_view c) { return is_control(c) ? std::string_view(" ") : c; });
-}
-
-std::string html_text(std::string_view text) { return each_character(one_line(text), escaped); }
 
 std::string reference_text(const CostReport& report) {
   return fmt::format(

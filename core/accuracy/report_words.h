@@ -2,18 +2,11 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 
 #include "core/accuracy/cost.h"
+#include "core/compare/number_words.h"
 
 namespace whit {
-
-/// Three significant digits, without an exponent: "0.00123", "14.0", "12300"; "unknown" of what is not finite.
-std::string three_digits(double value);
-
-/// "1.23 %"; of changes with their sign: "+1.23 %".
-std::string percent_text(double share);
-std::string signed_percent_text(double share);
 
 /// "31.2 ms", "14.0 s", "12.5 min", "3.20 h".
 std::string seconds_text(double seconds);
@@ -34,12 +27,6 @@ std::string effect_seconds(const CostEffect& effect);
 
 /// "64 samples", "sampler random, 64 samples".
 std::string setting_name(const CostSetting& setting);
-
-/// Text of the scene for a terminal: control characters become spaces, bytes that are not UTF-8 "?".
-std::string one_line(std::string_view text);
-
-/// The same between HTML tags, or in an attribute between double quotes.
-std::string html_text(std::string_view text);
 
 /// The first line of every form: what the reference is.
 std::string reference_text(const CostReport& report);

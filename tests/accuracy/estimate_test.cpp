@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 namespace whit {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <random>
 
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 namespace whit {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/accuracy/quantiles.h"
+#include "core/compare/quantiles.h"
 
 #include <gtest/gtest.h>
 
