@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -69,6 +70,14 @@ size_t AtomicFile::write_at(const void* data, size_t size, int64_t offset) {
 size_t AtomicFile::read_at(void* data, size_t size, int64_t offset) const {
   const ssize_t n = fd_ >= 0 ? ::pread(fd_, data, size, offset) : 0;
   return n > 0 ? static_cast<size_t>(n) : 0;
+}
+
+void AtomicFile::keep_permissions() {
+  struct stat old = {};
+  if (fd_ < 0 || ::stat(target_.c_str(), &old) != 0) return;
+  // Only the superuser may give files away; the mode afterwards, which another owner would cost some of its bits.
+  if (::fchown(fd_, old.st_uid, old.st_gid) != 0 && errno != EPERM) fail(errno);
+  if (::fchmod(fd_, old.st_mode & 07777) != 0) fail(errno);
 }
 
 std::string AtomicFile::commit() {

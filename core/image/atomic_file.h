@@ -26,6 +26,9 @@ class AtomicFile {
   /// The bytes written so far (the furthest end).
   int64_t size() const { return size_; }
 
+  /// Gives the new file the mode of the one that it will replace, where there is one, and its owner where that is allowed.
+  void keep_permissions();
+
   /// Flushes to the disk, closes and renames. Returns "" or the reason (errno's text).
   std::string commit();
 
