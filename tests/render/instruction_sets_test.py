@@ -88,7 +88,7 @@ class InstructionSets(unittest.TestCase):
                 for whit, picture in zip((NATIVE, PORTABLE), pictures):
                     run(whit, "render", path, "--quiet", "--display", "none", "--type", "float", "--outfile", picture)
                 done = run(NATIVE, "diff", *pictures, "--relmse", "1e-6", "--json")
-                self.assertTrue(json.loads(done.stdout)["accepted"], scene)
+                self.assertTrue(json.loads(done.stdout)["same"], scene)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/diagnostics.h"
 #include "tools/whit/terminal.h"
@@ -44,16 +45,25 @@ CLI::Option* add(CLI::App& app, const Flag& flag) {
       flag.target);
 }
 
+// A range takes NaN for neither too small nor too large.
+const CLI::Validator kIsNumber(
+    [](std::string& text) {
+      double value = 0;
+      return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? text + " is not a number" : std::string();
+    },
+    "");
+
 void apply(CLI::App& app, CLI::Option& option, const Flag& flag) {
   const FlagRules& rules = flag.rules;
   if (rules.least < rules.most) {
     // The type of the limits is the one that messages and help name.
     if (std::holds_alternative<int*>(flag.target) || std::holds_alternative<std::optional<int>*>(flag.target))
       option.check(CLI::Range(static_cast<int>(rules.least), static_cast<int>(rules.most)));
-    else option.check(CLI::Range(rules.least, rules.most));
+    else option.check(CLI::Range(rules.least, rules.most))->check(kIsNumber);
   }
   if (!rules.choices.empty()) option.check(CLI::IsMember(rules.choices));
   if (rules.count > 0) option.expected(rules.count)->allow_extra_args(false);
+  if (rules.repeats) option.allow_extra_args(false);
   if (rules.excludes) option.excludes(app.get_option(rules.excludes));
   if (rules.delimiter) option.delimiter(rules.delimiter);
   option.required(rules.required);

@@ -22,6 +22,7 @@ struct FlagRules {
   double least = 0, most = 0;             ///< A number within these, when they differ.
   std::vector<std::string> choices = {};  ///< One of these, when there are any.
   int count = 0;                          ///< That many values, when it is not 0.
+  bool repeats = false;                   ///< One value, as often as wanted.
   char delimiter = 0;                     ///< Between values in one word, when it is not 0.
   const char* excludes = nullptr;         ///< The flag beside which this one makes no sense.
   bool required = false;

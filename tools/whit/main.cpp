@@ -22,7 +22,7 @@ const std::vector<Command>& commands() {
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},
       {"import", import_command, "import MODEL [-o SCENE.pbrt]", "write a glTF model as a scene to edit"},
-      {"diff", diff_command, "diff OUT REFERENCE [--json]", "measure how far two pictures are apart"},
+      {"diff", diff_command, "diff A B [--noise] [--html F]", "say whether two pictures or folders of them differ"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
       {"help", help_command, "help [CATEGORY [PLUGIN] | --json]", "list plugins and their parameters"},
   };
