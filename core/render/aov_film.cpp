@@ -86,6 +86,22 @@ const float* AovTile::nearest(int x, int y) const {
 namespace {
 
 /// All units as one picture.
+/// (integral of f)^2 / integral of f^2 in pixels: the variance of a sum of neighbours over the sum of their variances.
+double noise_area(const Filter& filter) {
+  constexpr int kSteps = 256;
+  double sum = 0, squares = 0;
+  for (int y = 0; y < kSteps; ++y)
+    for (int x = 0; x < kSteps; ++x) {
+      const auto at = [](int i, float radius) { return ((static_cast<float>(i) + 0.5f) / kSteps * 2 - 1) * radius; };
+      const auto f = static_cast<double>(filter.evaluate(at(x, filter.x_width), at(y, filter.y_width)));
+      sum += f;
+      squares += f * f;
+    }
+  const double step =
+      4.0 * static_cast<double>(filter.x_width) * static_cast<double>(filter.y_width) / (kSteps * kSteps);
+  return squares > 0 ? sum * sum * step / squares : 1;
+}
+
 class Resolver {
  public:
   Resolver(const Scene& scene, const AovPlan& plan, const std::vector<AovTile>& tiles, const FilmUnits& film,
@@ -102,6 +118,7 @@ class Resolver {
       if (layer.row->matte) add_matte(layer, matte++, layer.row->names(scene_, place));
     }
     add_camera();
+    add_noise();
     return std::move(out_);
   }
 
@@ -242,6 +259,13 @@ class Resolver {
     out_.matrices.push_back({"worldToCamera", Imath::M44f(to_camera)});
     if (const std::optional<Mat4d> to_ndc = scene_.camera().to_ndc())
       out_.matrices.push_back({"worldToNDC", Imath::M44f(to_camera * *to_ndc)});
+  }
+
+  /// What `whit diff --noise` wants to know of variances: how well each is known, and how many pixels have noise in common.
+  void add_noise() {
+    if (!plan_.blocks) return;
+    out_.header.push_back({"whit:varianceFreedom", TileSums::kBlocks - 1});
+    out_.header.push_back({"whit:filterArea", static_cast<float>(noise_area(scene_.filter()))});
   }
 
   const Scene& scene_;

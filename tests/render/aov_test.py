@@ -377,6 +377,15 @@ class Mattes(AovCase):
             shape = "scene.pbrt:%d" % line
             self.assertEqual(self.manifest(picture, "CryptoShape"), {shape: "%08x" % murmur(shape)})
 
+    def test_names_do_not_depend_on_where_a_scene_is_rendered_from(self):
+        here = self.render(self.scene(SQUARE), "material,shape")
+        scene, picture = os.path.join(self.folder, "scene.pbrt"), os.path.join(self.folder, "elsewhere.exr")
+        for path, folder in ((scene, "/"), (os.path.relpath(scene, os.path.dirname(self.folder)), os.path.dirname(self.folder))):
+            subprocess.run([WHIT, path, "--outfile", picture, "--aov", "material,shape", "--display", "none", "--quiet",
+                            "--type", "float"], cwd=folder, check=True)
+            for matte in ("CryptoShape", "CryptoMaterial"):
+                self.assertEqual(self.manifest(Picture(picture), matte), self.manifest(here, matte))
+
     def test_numbers_and_their_table(self):
         import numpy  # pylint: disable=import-outside-toplevel
         picture = self.render(self.scene(ROOM, width=80, height=60), "material,shape")

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 
@@ -48,6 +49,23 @@ std::string take_stats_file(Arguments& args, std::string& file) {
     at = args.erase(at, at + (joined ? 1 : 2));
   }
   return {};
+}
+
+/// The command without what a picture does not depend on, so that equal pictures are equal files: where it goes, what is said
+/// of it, how many threads make it.
+std::string picture_command(const Arguments& args) {
+  const std::vector<std::string> with_value{"--outfile",        "-o",       "--display",     "--nthreads", "--json",
+                                            "--display-server", "--logdir", "--minloglevel", "--v"};
+  const std::vector<std::string> alone{"--quiet", "--stats", "--verbose"};
+  const auto is_in = [](const std::vector<std::string>& names, const std::string& word) {
+    return std::find(names.begin(), names.end(), word.substr(0, word.find('='))) != names.end();
+  };
+  std::string command = "whit";
+  for (size_t i = 0; i < args.size(); ++i) {
+    if (is_in(with_value, args[i])) i += args[i].find('=') == std::string::npos;
+    else if (!is_in(alone, args[i])) command.append(" ").append(args[i]);
+  }
+  return command;
 }
 
 // The effects' flags stand between these two tables.
@@ -188,6 +206,7 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   std::string problem = take_stats_file(words, settings.stats_file);
   if (problem.empty() && !parse_arguments(command, words, code)) return false;
   for (const std::string& a : args) settings.command_line += (settings.command_line.empty() ? "whit " : " ") + a;
+  settings.picture_command = picture_command(words);
   if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;
   if (settings.scenes.empty()) settings.scenes.push_back("-");

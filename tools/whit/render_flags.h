@@ -36,6 +36,7 @@ struct RenderSettings {
   int verbosity = 0, min_log_level = 0;
   std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
   std::string command_line;
+  std::string picture_command;  ///< The same for the header of pictures: without what they do not depend on.
 };
 
 /// Reads the arguments into settings. Returns true when the command should go on; otherwise `code` is what to

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -154,6 +155,11 @@ class RenderJob {
     const SourcePlace p = sources_.place(where);
     return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
   }
+  /// The same by the scene's own folder: names of things in a picture are the same wherever it was rendered from.
+  std::string place_in_scene(SourcePos where) const {
+    const std::string at = place(where), folder = std::filesystem::path(path_).parent_path().string() + "/";
+    return folder.size() > 1 && at.starts_with(folder) ? at.substr(folder.size()) : at;
+  }
 
   OutputRequest output_request(const SceneDescription& world) const {
     OutputRequest request = settings_.output;
@@ -234,7 +240,7 @@ class RenderJob {
   RenderOptions render_options(const BuiltWorld& built, const std::vector<std::string>& aovs,
                                DisplayServer& viewer) const {
     RenderOptions options;
-    options.aovs = {aovs, [this](SourcePos where) { return place(where); }};
+    options.aovs = {aovs, [this](SourcePos where) { return place_in_scene(where); }};
     options.threads = settings_.threads;
     const Vec2i size = built.scene->camera().film.resolution;
     if (!settings_.crop.empty()) {
@@ -275,11 +281,10 @@ class RenderJob {
 
   std::vector<OutputMetadata> metadata(const RenderResult& result) const {
     return {{"Software", fmt::format("whit {}", version())},
-            {"whit:command", settings_.command_line},
+            {"whit:command", settings_.picture_command},
             {"whit:scene", path_},
             {"whit:samplesPerPixel", static_cast<int>(std::lround(result.samples_per_pixel))},
-            {"whit:seed", std::to_string(settings_.seed)},  // Text, since an OpenEXR int ends at half of the seeds.
-            {"whit:renderSeconds", static_cast<float>(result.seconds)}};
+            {"whit:seed", std::to_string(settings_.seed)}};  // Text, since an OpenEXR int ends at half of the seeds.
   }
 
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
