@@ -1,6 +1,7 @@
 #include "core/base/plain_text.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace whit {
 namespace {
@@ -54,6 +55,11 @@ std::string one_line(std::string_view text) {
 }
 
 std::string html_text(std::string_view text) { return each_character(one_line(text), escaped); }
+
+std::string lower_case(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 std::string quoted_name(std::string_view name) {
   std::string text("\"");

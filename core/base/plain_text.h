@@ -12,6 +12,9 @@ std::string one_line(std::string_view text);
 /// The same between HTML tags, or in an attribute between double quotes.
 std::string html_text(std::string_view text);
 
+/// The same text in small letters of ASCII.
+std::string lower_case(std::string text);
+
 /// A name in double quotes, for a message.
 std::string quoted_name(std::string_view name);
 

@@ -6,10 +6,11 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdlib>
 #include <optional>
+
+#include "core/base/plain_text.h"
 
 namespace whit {
 namespace {
@@ -36,14 +37,9 @@ ToLinear of_curve(const Curve& curve) {
   return all;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 // The power of "gamma=2.2", or of OpenImageIO's "Gamma2.2"; none where it is no number.
 std::optional<double> gamma_of(const std::string& space) {
-  if (lower(space).rfind("gamma", 0) != 0) return std::nullopt;
+  if (lower_case(space).rfind("gamma", 0) != 0) return std::nullopt;
   const std::string number = space.substr(space.size() > 5 && space[5] == '=' ? 6 : 5);
   char* end = nullptr;
   const double gamma = std::strtod(number.c_str(), &end);
@@ -68,7 +64,7 @@ std::string known_spaces(const ocio::ConstConfigRcPtr& config) {
 }  // namespace
 
 ToLinearResult make_to_linear(const std::string& space) {
-  const std::string name = lower(space);
+  const std::string name = lower_case(space);
   if (name == "linear") return {of_curve([](double v) { return v; }), ""};
   if (name == "srgb") return {of_curve(srgb_decode), ""};
   if (name == "rec709") return {of_curve(rec709_decode), ""};

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 
+#include "core/base/plain_text.h"
+
 namespace whit {
 namespace {
 
@@ -14,11 +16,6 @@ bool is_one_of(const std::string& text, std::initializer_list<const char*> all) 
 }
 
 }  // namespace
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 ChannelKind channel_kind(const std::string& name) {
   const std::string last = last_part(name), whole = lower_case(name);

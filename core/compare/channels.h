@@ -22,9 +22,6 @@ ChannelKind channel_kind(const std::string& name);
 /// What is before the last dot: "Albedo" of "Albedo.R", "" of "R".
 std::string layer_of(const std::string& channel);
 
-/// The same text in small letters of ASCII.
-std::string lower_case(std::string text);
-
 /// True for a channel of a cryptomatte that holds the ids of what covers most of its pixels: "CryptoShape00.r".
 bool is_first_matte_rank(const std::string& channel);
 /// True for all channels of cryptomattes.

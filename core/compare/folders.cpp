@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -16,6 +15,7 @@
 #include <memory>
 #include <new>
 
+#include "core/base/plain_text.h"
 #include "core/base/stopwatch.h"
 #include "core/image/atomic_file.h"
 #include "core/plugin/mapped_file.h"
@@ -31,13 +31,8 @@ constexpr std::array kEndings{".exr", ".png", ".jpg",  ".jpeg", ".tga", ".tif", 
 /// With more subfolders behind symbolic links than that, these lead to each other.
 constexpr size_t kMostLinked = 10000;
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
-}
-
 bool is_picture(const fs::path& path) {
-  const std::string ending = lower(path.extension().string());
+  const std::string ending = lower_case(path.extension().string());
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
@@ -119,7 +114,7 @@ void Lister::note(const fs::directory_entry& entry, const std::string& name) {
 
 /// What is the same of names that may stand for one picture.
 std::string without_ending(const std::string& name) {
-  return lower(fs::path(name).replace_extension().generic_string());
+  return lower_case(fs::path(name).replace_extension().generic_string());
 }
 
 std::map<std::string, std::string> find_alike(const FolderPairs& pairs) {

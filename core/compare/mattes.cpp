@@ -5,6 +5,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "core/base/plain_text.h"
+
 namespace whit {
 namespace {
 

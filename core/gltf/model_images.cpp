@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/base/plain_text.h"
 #include "core/gltf/model_parts.h"
 
 namespace whit::gltf {
@@ -24,9 +25,7 @@ std::string extension_of_type(const std::string& mime_type) {
 std::string extension_of_file(const std::string& file) {
   const size_t dot = file.find_last_of("./");
   if (dot == file.npos || file[dot] != '.') return {};
-  std::string out = file.substr(dot + 1);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string out = lower_case(file.substr(dot + 1));
   return out == "jpeg" ? "jpg" : out == "png" || out == "jpg" || out == "webp" || out == "ktx2" ? out : std::string();
 }
 

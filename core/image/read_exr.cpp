@@ -15,11 +15,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <map>
 #include <stdexcept>
 #include <thread>
 
+#include "core/base/plain_text.h"
 #include "core/image/decode.h"
 
 namespace whit {
@@ -81,11 +81,6 @@ void check_part(const Imf::MultiPartInputFile& file, int part) {
 }
 
 SampleFormat format_of(Imf::PixelType type) { return type == Imf::HALF ? SampleFormat::Half : SampleFormat::Float; }
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
 
 // The part that holds the picture itself, by its name, or -1. Parts may be in any order.
 int main_part(const Imf::MultiPartInputFile& file) {

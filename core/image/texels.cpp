@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
 #include <utility>
 
+#include "core/base/plain_text.h"
 #include "core/base/vec.h"
 #include "core/batch/lanes.h"
 
@@ -37,11 +37,6 @@ int wrap_index(int i, int n, WrapMode wrap) {
     return std::min(twice, 2 * n - 1 - twice);
   }
   return i >= 0 && i < n ? i : -1;
-}
-
-std::string lower_case(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 constexpr size_t area(int width, int height) { return static_cast<size_t>(width) * static_cast<size_t>(height); }

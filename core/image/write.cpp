@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <exception>
 #include <filesystem>
 #include <limits>
 
+#include "core/base/plain_text.h"
 #include "core/image/encode.h"
 #include "core/image/oiio/module.h"
 
@@ -23,11 +23,7 @@ constexpr float kHalfMax = 65504.0f;
 // The smallest that a half stores with all of its digits.
 constexpr float kHalfMin = 0x1p-14f;
 
-std::string extension(const std::string& path) {
-  std::string e = std::filesystem::path(path).extension().string();
-  for (char& c : e) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return e;
-}
+std::string extension(const std::string& path) { return lower_case(std::filesystem::path(path).extension().string()); }
 
 std::string write_error(const std::string& path, std::string reason) {
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();

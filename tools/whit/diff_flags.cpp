@@ -9,6 +9,7 @@
 #include <optional>
 #include <tuple>
 
+#include "core/base/plain_text.h"
 #include "core/color/to_linear.h"
 #include "core/compare/measures.h"
 #include "tools/whit/command_line.h"
@@ -125,8 +126,7 @@ std::string take_crop(const Raw& raw, PairRequest& pair) {
 }
 
 std::string take_heat(const Raw& raw, DiffFlags& flags) {
-  std::string ending = std::filesystem::path(flags.heatmap).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(std::filesystem::path(flags.heatmap).extension().string());
   if (!flags.heatmap.empty() && ending != ".png")
     return fmt::format("--heatmap {}: a heat map is a PNG, and its name must end in .png", flags.heatmap);
   if (!raw.heat_scale) return "";

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <map>
 
+#include "core/base/plain_text.h"
 #include "core/compare/folders.h"
 #include "core/image/planes.h"
 #include "parser/source.h"
@@ -20,8 +21,7 @@ namespace fs = std::filesystem;
 
 /// "exr" of "x.EXR"; one word for endings that mean the same.
 std::string kind_of(const std::string& path) {
-  std::string ending = fs::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
+  const std::string ending = lower_case(fs::path(path).extension().string());
   return ending == ".jpeg" ? ".jpg" : ending == ".tiff" ? ".tif" : ending;
 }
 
