@@ -42,10 +42,6 @@ void note_statistics(const PicturePair& pair, Comparison& result) {
   if (!names.empty()) result.notes.push_back(names + ": statistics of samples, not compared");
 }
 
-}  // namespace
-
-namespace {
-
 // A limit that is asked for and that nothing was measured for would always hold. Most measures are of some layers alone, but
 // these are of all pictures with colours.
 std::string unmeasured_limit(const PicturePair& pair, const Limits& limits) {

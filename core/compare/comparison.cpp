@@ -59,6 +59,14 @@ const Measured* Comparison::find(const std::string& measure, const std::string& 
   return found == measured.end() ? nullptr : &*found;
 }
 
+const Failure* Comparison::failure_of(const Measured& m) const {
+  const auto found = std::find_if(failed.begin(), failed.end(),
+                                  [&](const Failure& f) { return f.measure == m.measure && f.layer == m.layer; });
+  return found == failed.end() ? nullptr : &*found;
+}
+
+double deviation(const Measured& m) { return m.measure == "ratio" ? std::abs(m.value - 1) : m.value; }
+
 std::string p_text(double p) { return p > 0 ? fmt::format("p = {:.2g}", p) : "p < 1e-300"; }
 
 double times_over(const Failure& failure) {
@@ -79,8 +87,7 @@ double badness(const Comparison& comparison) {
   for (const Measured& m : comparison.measured) {
     const MeasureRow* row = find_measure(m.measure);
     if (!row->limit) continue;
-    const double value = m.measure == "ratio" ? std::abs(m.value - 1) : m.value;
-    worst = std::max(worst, std::min(1.0, value / *row->limit));
+    worst = std::max(worst, std::min(1.0, deviation(m) / *row->limit));
   }
   return worst;
 }

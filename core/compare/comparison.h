@@ -82,12 +82,17 @@ struct Comparison {
   bool same() const { return cannot.empty() && failed.empty(); }
   /// What a measure came to; null where it was not measured.
   const Measured* find(const std::string& measure, const std::string& layer = "") const;
+  /// The failure of a measure's limit; null where it holds.
+  const Failure* failure_of(const Measured& measured) const;
 };
 
 inline constexpr size_t kNonFiniteKept = 100, kRegionsKept = 200;
 
 /// How bad it is, to sort by: cannot be compared above all, then the largest value over its limit; 0 to 1 when same.
 double badness(const Comparison& comparison);
+
+/// What a limit is compared with: the larger the worse, for measures that do not fall.
+double deviation(const Measured& measured);
 
 /// By how many times a failure is beyond its limit, 1 and more.
 double times_over(const Failure& failure);

@@ -268,13 +268,10 @@ BlockErrors largest_block_errors(const LayerPlanes& planes, const uint8_t* valid
 
 namespace {
 
-// NaN by bits: the floats of cryptomattes are none to compute with.
-bool equal(float a, float b) { return a == b || (a != a && b != b); }
-
 bool has_near(std::span<const float> plane, float value, int x, int y, int width, int height) {
   for (int ny = std::max(0, y - 1); ny <= std::min(height - 1, y + 1); ++ny)
     for (int nx = std::max(0, x - 1); nx <= std::min(width - 1, x + 1); ++nx)
-      if (equal(plane[static_cast<size_t>(ny) * static_cast<size_t>(width) + static_cast<size_t>(nx)], value))
+      if (equal_numbers(plane[static_cast<size_t>(ny) * static_cast<size_t>(width) + static_cast<size_t>(nx)], value))
         return true;
   return false;
 }
@@ -285,7 +282,7 @@ Mismatch mismatch_of(std::span<const float> a, std::span<const float> b, int wid
   size_t count = 0;
   Mismatch result;
   for (size_t i = 0; i < a.size(); ++i) {
-    if (equal(a[i], b[i])) continue;
+    if (equal_numbers(a[i], b[i])) continue;
     const int x = static_cast<int>(i % static_cast<size_t>(width)),
               y = static_cast<int>(i / static_cast<size_t>(width));
     if (has_near(b, a[i], x, y, width, height) && has_near(a, b[i], x, y, width, height)) continue;

@@ -10,6 +10,9 @@
 
 namespace whit {
 
+/// True of equal numbers, and of two that are none.
+inline bool equal_numbers(float a, float b) { return a == b || (a != a && b != b); }
+
 /// True when no value is NaN or infinite.
 bool all_finite(std::span<const float> values);
 

@@ -8,17 +8,11 @@
 #include <utility>
 
 #include "core/base/diagnostics.h"
+#include "core/compare/layer_measures.h"
 #include "core/compare/measures.h"
 
 namespace whit {
 namespace {
-
-std::vector<std::string> measure_names(bool below) {
-  std::vector<std::string> names;
-  for (const MeasureRow& row : all_measures())
-    if (row.falls == below) names.emplace_back(row.name);
-  return names;
-}
 
 std::string unknown_measure(const std::string& name, bool below) {
   std::string known;
@@ -27,9 +21,6 @@ std::string unknown_measure(const std::string& name, bool below) {
   return fmt::format("there is no measure \"{}\"{}; there are {}", name,
                      near.empty() ? "" : fmt::format(", did you mean {}?", near), known);
 }
-
-// What a limit is compared with: the larger the worse, for measures that do not fall.
-double deviation(const Measured& m) { return m.measure == "ratio" ? std::abs(m.value - 1) : m.value; }
 
 void judge_measures(const Limits& limits, Comparison& c) {
   for (Measured& m : c.measured) {
@@ -61,9 +52,7 @@ PixelsOff pixels_off(const PicturePair& pair, double by) {
       const ComparedChannel& channel = pair.channels[c];
       for (size_t i = 0; i < off.size(); ++i) {
         const float a = channel.a[i], b = channel.b[i];
-        // What is no number in either is not off by one.
-        const bool equal = a == b || (std::isnan(a) && std::isnan(b));
-        off[i] |= static_cast<uint8_t>(!equal && !(std::abs(double{a} - double{b}) <= by));
+        off[i] |= static_cast<uint8_t>(!equal_numbers(a, b) && !(std::abs(double{a} - double{b}) <= by));
       }
     }
   const auto first = std::find(off.begin(), off.end(), 1);

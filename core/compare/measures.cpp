@@ -59,6 +59,13 @@ const MeasureRow* find_measure(const std::string& name) {
   return found == rows.end() ? nullptr : &*found;
 }
 
+std::vector<std::string> measure_names(bool falls) {
+  std::vector<std::string> names;
+  for (const MeasureRow& row : all_measures())
+    if (row.falls == falls) names.emplace_back(row.name);
+  return names;
+}
+
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();

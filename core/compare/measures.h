@@ -26,6 +26,9 @@ std::span<const MeasureRow> all_measures();
 /// The row of a name; null when there is none.
 const MeasureRow* find_measure(const std::string& name);
 
+/// The names of those that fall, or of those that do not.
+std::vector<std::string> measure_names(bool falls);
+
 /// Measures every layer of a pair, appending to `measured`: by all that are not slow, and by the slow ones named. Returns how
 /// many pixels have a number that is not equal.
 int64_t measure_pair(const PicturePair& pair, const std::vector<std::string>& slow, std::vector<Measured>& measured);

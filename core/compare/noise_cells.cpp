@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/compare/layer_measures.h"
 #include "core/compare/noise_reach.h"
 
 namespace whit {
@@ -46,8 +47,7 @@ class PixelSums {
 
   void add(size_t i, BlockSums& to) const {
     const float a = tested_.channel->a[i], b = tested_.channel->b[i];
-    const bool equal = a == b || (std::isnan(a) && std::isnan(b));
-    if (!is_tested(i) || (!equal && !(std::isfinite(a) && std::isfinite(b)))) return;
+    if (!is_tested(i) || (!equal_numbers(a, b) && !(std::isfinite(a) && std::isfinite(b)))) return;
     to.pixels += 1;
     if (!std::isfinite(a)) return;
     const double d = double{a} - double{b}, r = tolerance(a, b), beyond = std::max(0.0, std::abs(d) - r);
@@ -123,9 +123,7 @@ std::vector<TestedChannel> tested_channels(const PicturePair& pair, const NoiseM
       const ComparedChannel& channel = pair.channels[c];
       const ComparedChannel* variance = beauty && model.known ? variance_of(pair, channel.name) : nullptr;
       if (variance) all.push_back({&channel, variance, nullptr, 0, model.area});
-      const bool all_known =
-          variance && std::all_of(variance->a.begin(), variance->a.end(), [](float v) { return std::isfinite(v); }) &&
-          std::all_of(variance->b.begin(), variance->b.end(), [](float v) { return std::isfinite(v); });
+      const bool all_known = variance && all_finite(variance->a) && all_finite(variance->b);
       if (all_known) continue;
       all.push_back({&channel, nullptr, variance, beauty || alike ? 0 : kAllowance,
                      noise_reach(channel.a, channel.b, pair.width(), pair.height())});

@@ -37,12 +37,6 @@ const char* numbers_name(PageNumbers numbers) {
   return numbers == PageNumbers::Half ? "half" : numbers == PageNumbers::Float ? "float" : "whole";
 }
 
-const Failure* failure_of(const Comparison& c, const Measured& m) {
-  const auto found = std::find_if(c.failed.begin(), c.failed.end(),
-                                  [&](const Failure& f) { return f.measure == m.measure && f.layer == m.layer; });
-  return found == c.failed.end() ? nullptr : &*found;
-}
-
 json measures_json(const Comparison& c) {
   json out = json::array();
   for (const Measured& m : c.measured) {
@@ -52,7 +46,7 @@ json measures_json(const Comparison& c) {
                    {"value", number(m.value)},
                    {"limit", m.limit ? number(*m.limit) : json()},
                    {"falls", row && row->falls},
-                   {"failed", failure_of(c, m) != nullptr},
+                   {"failed", c.failure_of(m) != nullptr},
                    {"doc", row ? row->doc : ""},
                    {"words", one_line(m.words)}});
   }
@@ -101,7 +95,7 @@ std::string place_title(const std::string& measure) {
 // some pixel.
 void add_places(const Comparison& c, const std::string& layer, json& out) {
   for (const Measured& m : c.measured)
-    if (m.at && m.layer == layer && m.measure != "pixels" && !failure_of(c, m) && m.value > 0)
+    if (m.at && m.layer == layer && m.measure != "pixels" && !c.failure_of(m) && m.value > 0)
       out.push_back(region("place", place_title(m.measure) + (m.layer.empty() ? "" : " in " + m.layer),
                            fmt::format("{:.4g}{}{}", m.value, m.channel.empty() ? "" : " in ", m.channel),
                            box_of(m.measure, *m.at), m.layer));

@@ -34,17 +34,11 @@ std::vector<std::string> columns_of(const std::vector<const PageRow*>& rows) {
   return columns;
 }
 
-const Failure* failure_of(const Comparison& c, const std::string& measure) {
-  const auto found = std::find_if(c.failed.begin(), c.failed.end(),
-                                  [&](const Failure& f) { return f.measure == measure && f.layer.empty(); });
-  return found == c.failed.end() ? nullptr : &*found;
-}
-
 std::string measure_cell(const PageRow& row, const std::string& name) {
   const Measured* m = row.comparison.find(name);
   if (!m) return "<td></td>";
   const MeasureRow* measure = find_measure(name);
-  const Failure* failure = failure_of(row.comparison, name);
+  const Failure* failure = row.comparison.failure_of(*m);
   std::string limit;
   if (m->limit && std::isfinite(*m->limit))
     limit = fmt::format("{}{}{}",

@@ -76,10 +76,6 @@ std::string channel_problem(const ImageInfo& a, const ImageInfo& b, const Pictur
 
 std::string size_text(const ImageInfo& info) { return fmt::format("{} x {}", info.full_width, info.full_height); }
 
-std::string window_text(const Box2i& box) {
-  return fmt::format("x {} to {}, y {} to {}", box.min.x, box.max.x, box.min.y, box.max.y);
-}
-
 // In per cent, of the display window.
 double share_of_picture(const PicturePair& pair) {
   return 100 * static_cast<double>(pair.pixels()) / (static_cast<double>(pair.a.full_width) * pair.a.full_height);
@@ -185,6 +181,10 @@ std::vector<ComparedChannel> take_channels(PicturePlanes& a, PicturePlanes& b, c
 Box2i data_window(const ImageInfo& info) {
   const Vec2i corner(info.x - info.full_x, info.y - info.full_y);
   return {corner, corner + Vec2i(info.width - 1, info.height - 1)};
+}
+
+std::string window_text(const Box2i& box) {
+  return fmt::format("x {} to {}, y {} to {}", box.min.x, box.max.x, box.min.y, box.max.y);
 }
 
 const ComparedChannel* PicturePair::find(const std::string& name) const {

@@ -68,6 +68,9 @@ struct PicturePair {
 /// The pixels that a picture has, in its display window, the maximum included.
 Box2i data_window(const ImageInfo& info);
 
+/// "x 3 to 10, y 0 to 7" of pixels, the maximum included.
+std::string window_text(const Box2i& box);
+
 /// Reads both files and makes them alike. `error` says what one has and the other lacks, or which file cannot be read.
 Result<PicturePair> read_pair(const std::string& a, const std::string& b, const PairRequest& request);
 

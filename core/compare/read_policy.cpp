@@ -199,13 +199,6 @@ void Value::reason(std::optional<std::string>& out) const {
   else text(out, "the reason as a text, or false");
 }
 
-std::vector<std::string> measure_names(bool below) {
-  std::vector<std::string> names;
-  for (const MeasureRow& row : all_measures())
-    if (row.falls == below) names.emplace_back(row.name);
-  return names;
-}
-
 void Value::limit(const std::string& measure, const Value& of, bool below, std::map<std::string, double>& out) const {
   const MeasureRow* row = find_measure(measure);
   if (row == nullptr) {

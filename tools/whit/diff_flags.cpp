@@ -19,13 +19,6 @@
 namespace whit {
 namespace {
 
-std::string names_of_measures(bool falls) {
-  std::string names;
-  for (const MeasureRow& row : all_measures())
-    if (row.falls == falls) names.append(names.empty() ? "" : ", ").append(row.name);
-  return names;
-}
-
 std::string defaults() {
   std::string text;
   for (const MeasureRow& row : all_measures())
@@ -41,7 +34,7 @@ std::string about() {
   return text;
 }
 
-std::string dear_names() {
+std::string slow_names() {
   std::string names;
   for (const MeasureRow& row : all_measures())
     if (row.slow) names.append(names.empty() ? "" : ", ").append(row.name);
@@ -50,7 +43,7 @@ std::string dear_names() {
 
 // What flags are read into before it is known to be right.
 struct Raw {
-  std::vector<std::string> above, below, dear;
+  std::vector<std::string> above, below, slow;
   std::vector<int> crop;
   std::string fail_pixels, colour_space, channels;
   std::optional<double> relmse, ratio, block, hard_fail, pixel_error, alpha, heat_scale;
@@ -103,11 +96,11 @@ std::string take_pixels(const Raw& raw, CompareSettings& said) {
   return "";
 }
 
-std::string take_dear(const Raw& raw, CompareRequest& base) {
-  for (const std::string& name : raw.dear) {
+std::string take_slow(const Raw& raw, CompareRequest& base) {
+  for (const std::string& name : raw.slow) {
     if (name != "all" && !find_measure(name))
       return fmt::format("--measure: there is no measure \"{}\"; those that are not taken anyway are {}, or all", name,
-                         dear_names());
+                         slow_names());
     for (const MeasureRow& row : all_measures())
       if (row.slow && (name == "all" || name == row.name)) base.slow.emplace_back(row.name);
   }
@@ -169,7 +162,7 @@ std::string take(const Raw& raw, DiffFlags& flags) {
   }
   if (problem.empty()) problem = take_limits(raw, said);
   if (problem.empty()) problem = take_pixels(raw, said);
-  if (problem.empty()) problem = take_dear(raw, flags.base);
+  if (problem.empty()) problem = take_slow(raw, flags.base);
   if (problem.empty()) problem = take_crop(raw, flags.base.pair);
   if (problem.empty()) problem = take_heat(raw, flags);
   flags.note = void_by_exact(raw);
@@ -182,10 +175,13 @@ std::string take(const Raw& raw, DiffFlags& flags) {
 bool read_diff_flags(const Arguments& args, DiffFlags& flags, int& code) {
   Raw raw;
   const std::string description = about();
-  const std::string above = "Limit MEASURE=VALUE, as often as wanted, of " + names_of_measures(false) +
+  const std::string above = "Limit MEASURE=VALUE, as often as wanted, of " +
+                            fmt::format("{}", fmt::join(measure_names(false), ", ")) +
                             "; inf switches one off. By default: " + defaults();
-  const std::string below = "The same of measures that fall: " + names_of_measures(true) + ". By default none";
-  const std::string dear = "Also take a measure that takes long: " + dear_names() + ", or all";
+  const std::string below =
+      "The same of measures that fall: " + fmt::format("{}", fmt::join(measure_names(true), ", ")) +
+      ". By default none";
+  const std::string slow = "Also take a measure that takes long: " + slow_names() + ", or all";
   const FlagRules repeats{.repeats = true};
   const CommandLine command{
       "whit diff",
@@ -208,7 +204,7 @@ bool read_diff_flags(const Arguments& args, DiffFlags& flags, int& code) {
         &raw.alpha,
         "Of pairs that differ by noise alone --noise calls so many different; by default 0.001",
         {.least = kLeastAlpha, .most = kMostAlpha}},
-       {"--measure", &raw.dear, dear.c_str(), repeats},
+       {"--measure", &raw.slow, slow.c_str(), repeats},
        {"--relmse", &raw.relmse, "Limit of relmse and relmse_robust"},
        {"--ratio", &raw.ratio, "The same as --fail-above ratio="},
        {"--block", &raw.block, "Limit of block; of channel_block twice that"},

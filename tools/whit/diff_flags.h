@@ -12,7 +12,7 @@ namespace whit {
 struct DiffFlags {
   std::string a, b;                  ///< Pictures or folders, the judged one and the reference.
   CompareSettings said;              ///< What the command line says of how to compare.
-  CompareRequest base;               ///< What no policy says: the crop, dear measures.
+  CompareRequest base;               ///< What no policy says: the crop, slow measures.
   std::string policy;                ///< File, "" for none.
   std::string heatmap, html, junit;  ///< Files to write, "" for none.
   bool heat_signed = false;

@@ -24,16 +24,12 @@ std::string headline(const Comparison& c, bool colour) {
   return coloured(text.substr(0, colon), c.same() ? "1;32" : "1;31", colour) + text.substr(colon) + "\n";
 }
 
-std::string box_text(const Box2i& box) {
-  return fmt::format("x {} to {}, y {} to {}", box.min.x, box.max.x, box.min.y, box.max.y);
-}
-
 std::string region_text(const NoiseRegion& r) {
   // Of means that are equal, or of black, there is no change in per cent.
   const bool told = std::isfinite(r.change) && r.change != 0;
   const std::string by =
       told ? fmt::format("by {}{}", r.change > 0 ? "+" : "", short_percent_text(r.change)) : "differs";
-  std::string text = fmt::format("  {}: {} {}, {}", box_text(r.box), r.channel, by, p_text(r.p));
+  std::string text = fmt::format("  {}: {} {}, {}", window_text(r.box), r.channel, by, p_text(r.p));
   for (size_t k = 0; k < r.objects.size(); ++k) text.append(k == 0 ? ", in " : ", ").append(r.objects[k]);
   return printable(text) + "\n";
 }
@@ -80,8 +76,7 @@ std::string table(const Comparison& c, const Limits& limits, bool colour) {
   std::string text = fmt::format("{:<16} {:<14} {:>12} {:>10}  {}\n", "layer", "measure", "value", "limit", "where");
   for (const Measured& m : c.measured) {
     const auto limit = limit_of(*find_measure(m.measure), limits);
-    const bool failed = std::any_of(c.failed.begin(), c.failed.end(),
-                                    [&](const Failure& f) { return f.measure == m.measure && f.layer == m.layer; });
+    const bool failed = c.failure_of(m) != nullptr;
     const std::string line =
         fmt::format("{:<16} {:<14} {:>12} {:>10}  {}", m.layer.empty() ? "(picture)" : printable(m.layer), m.measure,
                     fmt::format("{:.5g}", m.value), limit ? fmt::format("{:g}", *limit) : "", printable(place_text(m)));
