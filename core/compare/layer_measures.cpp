@@ -42,6 +42,8 @@ Sums sums_of(const PlanePair& plane, size_t first, size_t last) {
   return {a, b, magnitude, squares, distances, peak, largest};
 }
 
+double relative_error(double a, double b, double epsilon) { return (a - b) * (a - b) / (b * b + epsilon); }
+
 void add_relative(const LayerPlanes& planes, double floor, std::vector<float>& relative) {
   const double share = 1 / static_cast<double>(planes.size()), epsilon = floor * floor;
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -50,28 +52,24 @@ void add_relative(const LayerPlanes& planes, double floor, std::vector<float>& r
       const float *const pa = plane.a.data(), *const pb = plane.b.data();
       float* const to = relative.data();
 #pragma omp simd
-      for (size_t i = first; i < last; ++i) {
-        const double b = pb[i], d = pa[i] - b;
-        to[i] = static_cast<float>(std::min(kMost, to[i] + share * (d * d / (b * b + epsilon))));
-      }
+      for (size_t i = first; i < last; ++i)
+        to[i] = static_cast<float>(std::min(kMost, to[i] + share * relative_error(pa[i], pb[i], epsilon)));
     }
     return '\0';
   });
 }
 
-double relative_mse(const LayerPlanes& planes, double floor) {
-  const double epsilon = floor * floor;
+/// The mean over pixels and channels of what `of` makes of a pair of numbers.
+template <class Of>
+double mean_of(const LayerPlanes& planes, const Of& of) {
   double sum = 0;
   for (const PlanePair& plane : planes)
     for (const double part : by_chunks<double>(plane.b.size(), [&](size_t first, size_t last) {
            const float *const pa = plane.a.data(), *const pb = plane.b.data();
-           double errors = 0;
-#pragma omp simd reduction(+ : errors)
-           for (size_t i = first; i < last; ++i) {
-             const double b = pb[i], d = pa[i] - b;
-             errors += d * d / (b * b + epsilon);
-           }
-           return errors;
+           double chunk = 0;
+#pragma omp simd reduction(+ : chunk)
+           for (size_t i = first; i < last; ++i) chunk += of(double{pa[i]}, double{pb[i]});
+           return chunk;
          }))
       sum += part;
   return sum / static_cast<double>(planes.size() * planes[0].b.size());
@@ -93,18 +91,8 @@ double median_magnitude(const LayerPlanes& planes) {
 
 // A lamp is no measure for what it shines on.
 double usual_magnitude(const LayerPlanes& planes) {
-  const double most = 10 * median_magnitude(planes);
-  double sum = 0;
-  for (const PlanePair& plane : planes)
-    for (const double part : by_chunks<double>(plane.b.size(), [&](size_t first, size_t last) {
-           double cut = 0;
-           const float* const b = plane.b.data();
-#pragma omp simd reduction(+ : cut)
-           for (size_t i = first; i < last; ++i) cut += std::min(most, std::abs(double{b[i]}));
-           return cut;
-         }))
-      sum += part;
-  return sum / static_cast<double>(planes.size() * planes[0].b.size());
+  return mean_of(planes,
+                 [most = 10 * median_magnitude(planes)](double, double b) { return std::min(most, std::abs(b)); });
 }
 
 // Where a plane's largest difference is first.
@@ -154,7 +142,8 @@ LayerErrors layer_errors(const LayerPlanes& planes) {
   e.mean_magnitude = magnitude / numbers;
   e.usual_magnitude = usual_magnitude(planes);
   e.robust.assign(pixels, 0.0f);
-  e.relmse = relative_mse(planes, floor_of(e.mean_magnitude));
+  const double floor = floor_of(e.mean_magnitude);
+  e.relmse = mean_of(planes, [epsilon = floor * floor](double x, double y) { return relative_error(x, y, epsilon); });
   add_relative(planes, floor_of(e.usual_magnitude), e.robust);
   return e;
 }
