@@ -85,18 +85,18 @@ class Start(unittest.TestCase):
             parts = sum(start[p] for p in PARTS)
             # The clocks are read one after the other, and tick in microseconds.
             self.assertLessEqual(parts, start["ready"] + 1e-3)
-            if parts < 0.95 * start["ready"]:
+            if parts < 0.9 * start["ready"] - 1e-3:
                 return "parts of %g %s of %g: %s" % (parts, clock, start["ready"], start)
             # The steps that machines have known so far are the same times.
             for step in ("parse", "plan"):
                 self.assertEqual(start[step], figures[clock][step])
             built = sum(start[p] for p in PARTS[PARTS.index("inputs"):])
-            if not 0.95 * figures[clock]["build"] - 1e-3 <= built <= figures[clock]["build"] + 1e-3:
+            if not 0.9 * figures[clock]["build"] - 1e-3 <= built <= figures[clock]["build"] + 1e-3:
                 return "a build of %g %s made of %g" % (figures[clock]["build"], clock, built)
             told = start["ready"] + figures[clock]["render"] + figures[clock]["write"]
-            # From outside there are the end of the process too, and a child of Python's before it is whit; and the
-            # kernel's clock of processes ticks in hundredths of a second.
-            if not 0.8 * whole[clock] - 0.03 <= told <= whole[clock] + 0.011:
+            # No more than is seen from outside, where the kernel's clock of processes ticks in hundredths of a second.
+            # It may be less: the end of the process is not told, in which sanitizers look for leaks.
+            if told > whole[clock] + 0.011:
                 return "%g %s told of, %g taken" % (told, clock, whole[clock])
         return None
 
@@ -113,17 +113,14 @@ class Start(unittest.TestCase):
             problems.append(problem)
         self.fail("\n".join(problems))
 
-    def share(self, start, *parts):
-        return sum(start["cpu_seconds"][p] for p in parts) / start["cpu_seconds"]["ready"]
-
     def test_a_map_light(self):
         self.write("sky.pfm", sky(1024, 512))
-        start = self.check('LightSource "infinite" "string mapname" ["sky.pfm"]\nShape "sphere"\n')
-        self.assertGreater(self.share(start, "pictures", "lights"), 0.5)
-        self.assertGreater(start["cpu_seconds"]["lights"], 1e-4)
-        # A light that is no picture has none to be read.
-        start = self.check('LightSource "infinite"\nShape "sphere"\n')
-        self.assertEqual(start["cpu_seconds"]["pictures"], 0)
+        mapped = self.check('LightSource "infinite" "string mapname" ["sky.pfm"]\nShape "sphere"\n')["cpu_seconds"]
+        # A light that is no picture has none to be read, and none to be made a distribution of.
+        plain = self.check('LightSource "infinite"\nShape "sphere"\n')["cpu_seconds"]
+        self.assertGreater(mapped["pictures"], 0)
+        self.assertEqual(plain["pictures"], 0)
+        self.assertGreater(mapped["lights"], plain["lights"])
 
     def test_a_sky(self):
         self.write("sky.pfm", sky(600, 300))
@@ -131,16 +128,18 @@ class Start(unittest.TestCase):
         self.assertGreater(start["cpu_seconds"]["pictures"], start["cpu_seconds"]["lights"])
 
     def test_meshes(self):
+        """45 000 triangles against a sphere: thousands of times the work, of which a part must be seen where it is
+        done, on whatever machine."""
         points, triangles = sheet()
         self.write("sheet.ply", ply(points, triangles))
         light = 'LightSource "distant"\n'
-        start = self.check(light + 'Shape "plymesh" "string filename" ["sheet.ply"]\n')
-        self.assertGreater(self.share(start, "geometry", "placing", "ray_tracer"), 0.3)
+        ball = self.check(light + 'Shape "sphere"\n')["cpu_seconds"]
+        read = self.check(light + 'Shape "plymesh" "string filename" ["sheet.ply"]\n')["cpu_seconds"]
         for part in ("geometry", "placing", "ray_tracer"):
-            self.assertGreater(start["cpu_seconds"][part], 2e-4, part)
+            self.assertGreater(read[part], 2 * ball[part], part)
         # The same in the scene's text takes its time to be parsed.
-        in_text = self.check(light + inline(points, triangles))
-        self.assertGreater(in_text["cpu_seconds"]["parse"], 10 * start["cpu_seconds"]["parse"])
+        in_text = self.check(light + inline(points, triangles))["cpu_seconds"]
+        self.assertGreater(in_text["parse"], 2 * read["parse"])
 
     def test_textures(self):
         shutil.copy(ROOT + "/scenes/assets/tiles.png", self.folder)
