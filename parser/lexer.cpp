@@ -389,6 +389,15 @@ void Lexer::resynchronise(bool (*starts_statement)(std::string_view)) {
   consume_to(p);
 }
 
+std::string_view token_at(std::string_view text, uint64_t offset) {
+  if (offset >= text.size()) return {};
+  Diagnostics ignored;
+  Reporter reporter(ignored);
+  Lexer lexer(text.substr(offset), 0, reporter);
+  const Token& token = lexer.peek();
+  return token.offset == 0 ? token.text : std::string_view();
+}
+
 SourcePos value_position(const Sources& sources, const Parameter& parameter, size_t i) {
   const std::string_view text = sources.text(parameter.values_at.file);
   if (parameter.values_at.offset >= text.size()) return parameter.values_at;

@@ -102,6 +102,9 @@ class Lexer {
   const char* next_close_ = nullptr;  ///< The first ] at or behind the place where one was last looked for.
 };
 
+/// The word, number or string that begins at a byte of a file, quotes included; "" where none does.
+std::string_view token_at(std::string_view text, uint64_t offset);
+
 /// Where the i-th value of a parameter is in its file, counted as tokens in the list: found by reading the list
 /// again, so that it costs nothing to know. The start of the values when there is no such value.
 SourcePos value_position(const Sources& sources, const Parameter& parameter, size_t i);

@@ -29,14 +29,13 @@ constexpr TypeName kTypes[] = {
     {"spectrum", ParamType::Spectrum}, {"texture", ParamType::Texture},
 };
 
-std::string type_remedy(const std::string& name) {
+Remedy type_remedy(const std::string& name) {
   std::vector<std::string> names;
   for (const TypeName& type : kTypes) names.emplace_back(type.name);
-  std::string remedy = did_you_mean(name, names);
-  if (!remedy.empty()) return remedy;
-  remedy = "the types are";
-  for (const std::string& type : names) remedy += (type == names.front() ? " " : ", ") + type;
-  return remedy;
+  if (Remedy remedy = suggestion(name, names); remedy.slip.known()) return remedy;
+  std::string list = "the types are";
+  for (const std::string& type : names) list += (type == names.front() ? " " : ", ") + type;
+  return list;
 }
 
 bool is_spectral(ParamType type) {

@@ -16,20 +16,21 @@ class Reporter {
 
   explicit Reporter(Diagnostics& out) : out_(out) {}
 
-  void error(SourcePos where, std::string message, std::string remedy = {}) {
+  void error(SourcePos where, std::string message, Remedy remedy = {}) {
     if (admit(where, Severity::Error)) out_.error(where, std::move(message), std::move(remedy));
   }
-  void file_error(SourcePos where, std::string message, std::string remedy = {}) {
+  void file_error(SourcePos where, std::string message, Remedy remedy = {}) {
     if (admit(where, Severity::Error)) out_.file_error(where, std::move(message), std::move(remedy));
   }
-  void warning(SourcePos where, std::string message, std::string remedy = {}) {
+  void warning(SourcePos where, std::string message, Remedy remedy = {}) {
     if (admit(where, Severity::Warning)) out_.warning(where, std::move(message), std::move(remedy));
   }
 
   /// A mistake that pbrt-v3 renders past: a warning, which `whit check` calls an error. `other` is a second place.
-  void excused(SourcePos where, std::string message, std::string remedy = {}, SourcePos other = {}) {
+  void excused(SourcePos where, std::string message, Remedy remedy = {}, SourcePos other = {}) {
     if (!admit(where, Severity::Warning)) return;
-    out_.add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), other, true});
+    out_.add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy.text), other, true,
+              std::move(remedy.slip)});
   }
 
   /// What others have found.

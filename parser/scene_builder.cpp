@@ -13,7 +13,7 @@ namespace {
 
 /// "did you mean" among the names of some maps; nothing once there are so many problems that none is shown any more.
 template <class... Maps>
-std::string suggest(const Reporter& reporter, const std::string& name, const Maps&... maps) {
+Remedy suggest(const Reporter& reporter, const std::string& name, const Maps&... maps) {
   // Scopes can hold very many names; the search for a near one must not dominate a file full of mistakes.
   constexpr size_t kMost = 2000;
   std::vector<std::string> names;
@@ -25,7 +25,7 @@ std::string suggest(const Reporter& reporter, const std::string& name, const Map
   (add(maps), ...);
   // A hash table has no order; the answer should not depend on that.
   std::sort(names.begin(), names.end());
-  return did_you_mean(name, names);
+  return suggestion(name, names);
 }
 
 /// What a name stands for: the index of a thing, nothing, or a named material that could not be made.
@@ -175,8 +175,8 @@ void SceneBuilder::coord_sys_transform(Statement& s) {
     return;
   }
   if (object_has_gaps_) return;  // It may be defined there.
-  std::string remedy = suggest(reporter_, s.names[0], coordinate_systems_);
-  if (remedy.empty() && !scene().unread_files.empty())
+  Remedy remedy = suggest(reporter_, s.names[0], coordinate_systems_);
+  if (remedy.text.empty() && !scene().unread_files.empty())
     remedy = "files included in objects that are never placed are not read; is it defined in one of them?";
   reporter_.warning(s.names_at[0],
                     "no coordinate system named " + in_quotes(s.names[0]) + ": CoordSysTransform is ignored", remedy);
@@ -277,9 +277,10 @@ void SceneBuilder::resolve_media() {
     use.medium = look_up(media, use.name);
     if (use.medium >= 0) continue;
     if (!scene().unread_files.empty()) needs_unread_ = true;
-    const std::string meant = suggest(reporter_, use.name, media);
-    reporter_.excused(use.where, "no medium named " + in_quotes(use.name),
-                      "there is none here, as in pbrt-v3" + (meant.empty() ? "" : "; " + meant));
+    const Remedy meant = suggest(reporter_, use.name, media);
+    reporter_.excused(
+        use.where, "no medium named " + in_quotes(use.name),
+        {"there is none here, as in pbrt-v3" + (meant.text.empty() ? "" : "; " + meant.text), meant.slip});
   }
 }
 
@@ -591,10 +592,11 @@ void SceneBuilder::named_material(Statement& s) {
 
 void SceneBuilder::warn_no_material(const std::string& name, SourcePos where, const std::string& instead) {
   if (!scene().unread_files.empty()) needs_unread_ = true;
-  const std::string meant = suggest(reporter_, name, named_materials_);
+  const Remedy meant = suggest(reporter_, name, named_materials_);
   reporter_.excused(
       where, "no material named " + in_quotes(name),
-      instead + ", as in pbrt-v3; MakeNamedMaterial must come before" + (meant.empty() ? "" : "; " + meant));
+      {instead + ", as in pbrt-v3; MakeNamedMaterial must come before" + (meant.text.empty() ? "" : "; " + meant.text),
+       meant.slip});
 }
 
 void SceneBuilder::light_source(Statement& s) {

@@ -127,8 +127,8 @@ struct SceneDescription {
   std::map<int, int> singular_transforms;  ///< Transforms that cannot be inverted, and who made each so.
   bool is_singular(int transform) const { return singular_transforms.count(transform) > 0; }
   std::vector<TextureDescription> textures;
-  /// Names that were used where no texture had them, and a remedy: what each may have been meant to be, or "".
-  std::map<std::string, std::string> unknown_textures;
+  /// Names that were used where no texture had them, and what each may have been meant to be.
+  std::map<std::string, Remedy> unknown_textures;
   std::vector<MaterialDescription> materials;  ///< [0] is pbrt's default: matte with no parameters.
   std::vector<LightDescription> lights;
   std::vector<Entity> area_lights;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,10 @@ class Sources {
   /// Opens a file and returns its number; the same unchanged file opened again keeps its number and first name.
   /// On failure nothing, and `problem` says why ("No such file or directory").
   std::optional<uint32_t> open(const std::string& path, std::string& problem);
+
+  /// From now on a file is this text, as an editor has it that has not saved: opening `path`, or another path to the
+  /// same file, gives it. Nothing of it is read from the disk, where it need not be.
+  void stand_in(const std::string& path, std::string text);
 
   /// Adds text that is no file, under the name that messages will show.
   uint32_t add_text(std::string name, std::string text);
@@ -61,7 +66,10 @@ class Sources {
   const File* find(uint32_t file) const;
   std::string excerpt(SourcePos where, bool colour) const;
 
+  std::optional<uint32_t> stand_in_for(const std::string& path) const;
+
   std::vector<std::unique_ptr<File>> files_;
+  std::map<std::string, uint32_t> stand_ins_;  ///< By canonical path.
 };
 
 /// Text for a message: in double quotes, unprintable bytes escaped, cut after 60 characters.

@@ -200,15 +200,18 @@ bool starts_statement(std::string_view word) {
   return is_directive(word) || looks_like_directive(word) || !find_ignoring_case(word).empty();
 }
 
-std::string unknown_directive_remedy(std::string_view word) {
+Remedy unknown_directive_remedy(std::string_view word) {
   const std::string foreign = foreign_characters(word);
   if (!foreign.empty()) return foreign;
   const std::string_view other_case = find_ignoring_case(word);
-  if (!other_case.empty()) return "directives are case sensitive: write " + std::string(other_case);
+  if (!other_case.empty())
+    return {"directives are case sensitive: write " + std::string(other_case),
+            {std::string(word), std::string(other_case)}};
   std::vector<std::string> known;
   for (const StatementRow& row : kStatements) known.emplace_back(row.name);
   const std::string nearest = nearest_name(std::string(word), known);
-  return nearest.empty() ? std::string() : "did you mean " + nearest + "?";
+  if (nearest.empty()) return {};
+  return {"did you mean " + nearest + "?", {std::string(word), nearest}};
 }
 
 void report_unknown_directive(Reporter& reporter, SourcePos where, std::string_view word) {
@@ -221,7 +224,7 @@ void report_unknown_directive(Reporter& reporter, SourcePos where, std::string_v
   // The same words at every such line, so that they are shown a few times only.
   const bool comment = word.starts_with("//");
   reporter.error(where, comment ? "unknown directive \"//\"" : "unknown directive " + in_quotes(word),
-                 reporter.crowded() ? "" : unknown_directive_remedy(word));
+                 reporter.crowded() ? Remedy() : unknown_directive_remedy(word));
 }
 
 void report_no_directive(Lexer& lexer, const Token& token) {

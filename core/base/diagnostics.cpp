@@ -63,4 +63,10 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
   return nearest.empty() ? std::string() : "did you mean \"" + nearest + "\"?";
 }
 
+Remedy suggestion(const std::string& name, const std::vector<std::string>& candidates) {
+  Remedy remedy = did_you_mean(name, candidates);
+  if (!remedy.text.empty()) remedy.slip = {name, nearest_name(name, candidates)};
+  return remedy;
+}
+
 }  // namespace whit

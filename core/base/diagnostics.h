@@ -22,32 +22,50 @@ enum class Severity : uint8_t { Warning, Error };
 /// for, apart from the scene, cannot be had (2).
 enum class ErrorClass : uint8_t { Scene, File, Usage };
 
+/// A slip of the pen: in the word or string at a diagnostic's place, `written` stands where `meant` should.
+struct Slip {
+  std::string written, meant;  ///< Both "" where no correction is beyond doubt.
+  bool known() const { return !meant.empty(); }
+};
+
+/// What to do about a mistake: for people, and where that can be done without asking them, for programs.
+struct Remedy {
+  std::string text;
+  Slip slip{};
+  Remedy() = default;
+  Remedy(std::string t) : text(std::move(t)) {}
+  Remedy(const char* t) : text(t) {}
+  Remedy(std::string t, Slip s) : text(std::move(t)), slip(std::move(s)) {}
+};
+
 struct Diagnostic {
   Severity severity = Severity::Error;
   ErrorClass error_class = ErrorClass::Scene;
   SourcePos where;
-  std::string message;  ///< What is wrong, naming the thing: "sphere has no parameter \"raduis\"".
-  std::string remedy;   ///< What to do, or what was done instead: "did you mean \"radius\"?"; may be empty.
-  SourcePos other{};    ///< A second place that it is about, where there is one.
+  std::string message;   ///< What is wrong, naming the thing: "sphere has no parameter \"raduis\"".
+  std::string remedy{};  ///< What to do, or what was done instead: "did you mean \"radius\"?"; may be empty.
+  SourcePos other{};     ///< A second place that it is about, where there is one.
   /// A mistake that pbrt-v3 renders past, and so do we with this warning; `whit check` calls it an error.
   bool excused = false;
+  Slip slip{};         ///< What `whit check --fix` and editors can correct.
+  std::string name{};  ///< Of a finding that can be silenced: "unused-texture"; "" for what is plainly wrong.
 };
 
 /// An ordered collection of diagnostics. Not thread-safe: one per stage, merged by append().
 class Diagnostics {
  public:
-  void error(SourcePos where, std::string message, std::string remedy = {}) {
-    add({Severity::Error, ErrorClass::Scene, where, std::move(message), std::move(remedy)});
+  void error(SourcePos where, std::string message, Remedy remedy = {}) {
+    put({Severity::Error, ErrorClass::Scene, where, std::move(message)}, std::move(remedy));
   }
-  void file_error(SourcePos where, std::string message, std::string remedy = {}) {
-    add({Severity::Error, ErrorClass::File, where, std::move(message), std::move(remedy)});
+  void file_error(SourcePos where, std::string message, Remedy remedy = {}) {
+    put({Severity::Error, ErrorClass::File, where, std::move(message)}, std::move(remedy));
   }
-  void warning(SourcePos where, std::string message, std::string remedy = {}) {
-    add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy)});
+  void warning(SourcePos where, std::string message, Remedy remedy = {}) {
+    put({Severity::Warning, ErrorClass::Scene, where, std::move(message)}, std::move(remedy));
   }
   /// A warning where a picture is made, an error where a file is checked: see Diagnostic::excused.
-  void excused(SourcePos where, std::string message, std::string remedy = {}) {
-    add({Severity::Warning, ErrorClass::Scene, where, std::move(message), std::move(remedy), {}, true});
+  void excused(SourcePos where, std::string message, Remedy remedy = {}) {
+    put({Severity::Warning, ErrorClass::Scene, where, std::move(message), {}, {}, true}, std::move(remedy));
   }
   void add(Diagnostic d) { all_.push_back(std::move(d)); }
   void append(const Diagnostics& other) { all_.insert(all_.end(), other.all_.begin(), other.all_.end()); }
@@ -56,6 +74,12 @@ class Diagnostics {
   bool has_errors() const;
 
  private:
+  void put(Diagnostic d, Remedy remedy) {
+    d.remedy = std::move(remedy.text);
+    d.slip = std::move(remedy.slip);
+    add(std::move(d));
+  }
+
   std::vector<Diagnostic> all_;
 };
 
@@ -65,5 +89,8 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
 
 /// ", did you mean \"x\"?" style remedy text for a misspelt name, or "" when nothing is near.
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates);
+
+/// The same for what stands at a place in a scene file, which can then be corrected.
+Remedy suggestion(const std::string& name, const std::vector<std::string>& candidates);
 
 }  // namespace whit

@@ -63,7 +63,7 @@ std::string called(const Parameter& p, const BindContext& ctx) {
   return ctx.statement_name.empty() ? name : name + " of " + ctx.statement_name;
 }
 
-bool fail(const BindContext& ctx, SourcePos where, std::string message, std::string remedy = {}) {
+bool fail(const BindContext& ctx, SourcePos where, std::string message, Remedy remedy = {}) {
   ctx.diagnostics->error(where, std::move(message), std::move(remedy));
   return false;
 }
@@ -207,9 +207,9 @@ bool read_texture(const Parameter& p, const BindContext& ctx, Tex<T>& out) {
     return true;
   }
   if (index < 0) {
-    const std::string hint = ctx.texture_hint ? ctx.texture_hint(ref.name) : "";
+    const Remedy hint = ctx.texture_hint ? ctx.texture_hint(ref.name) : Remedy();
     return fail(ctx, ctx.at(p), "no texture named \"" + ref.name + '"',
-                hint.empty() ? "a texture must be defined before it is used" : hint);
+                hint.text.empty() ? "a texture must be defined before it is used" : hint);
   }
   std::shared_ptr<Texture<T>> texture;
   if constexpr (wants_float) texture = ctx.float_texture(index, p.name);
@@ -545,10 +545,10 @@ bool read_choice(const Parameter& p, const BindContext& ctx, const std::vector<s
     }
     list += (i > 0 ? ", \"" : "\"") + choices[i] + '"';
   }
-  std::string remedy = did_you_mean(v[0], choices);
-  if (!remedy.empty()) remedy += ' ';
-  ctx.diagnostics->warning(ctx.at(p), called(p, ctx) + " is \"" + v[0] + "\", not one of " + list,
-                           remedy + '"' + choices[static_cast<size_t>(out.index)] + "\" is used");
+  Remedy remedy = suggestion(v[0], choices);
+  if (!remedy.text.empty()) remedy.text += ' ';
+  remedy.text += '"' + choices[static_cast<size_t>(out.index)] + "\" is used";
+  ctx.diagnostics->warning(ctx.at(p), called(p, ctx) + " is \"" + v[0] + "\", not one of " + list, remedy);
   return true;
 }
 

@@ -94,8 +94,8 @@ struct BindContext {
   /// none.
   std::function<std::shared_ptr<Texture<float>>(int, const std::string&)> float_texture;
   std::function<std::shared_ptr<Texture<RGB>>(int, const std::string&)> spectrum_texture;
-  /// What the name of a texture that is not there may have been meant to be, as a remedy; "" when nothing is near.
-  std::function<std::string(const std::string&)> texture_hint;
+  /// What the name of a texture that is not there may have been meant to be, as a remedy; empty when nothing is near.
+  std::function<Remedy(const std::string&)> texture_hint;
   bool with_textures = true;  ///< Else a parameter that names one which is not constant keeps its default.
   /// Where parameters that could not be read are listed; when null, the first of them makes binding fail.
   std::vector<MissingParameter>* missing = nullptr;

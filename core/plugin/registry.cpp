@@ -47,9 +47,9 @@ void warn_unknown(const PluginInfo& info, const Parameter& p, const BindContext&
   add_names(&info);
   for (const PluginInfo* other : also_known)
     if (other) add_names(other);
-  const std::string hint = did_you_mean(p.name, names);
+  const Remedy hint = suggestion(p.name, names);
   ctx.diagnostics->warning(p.where, info.name + " has no parameter \"" + p.name + '"',
-                           hint.empty() ? "it is ignored" : hint);
+                           hint.slip.known() ? hint : "it is ignored");
 }
 
 void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parameter& p, const BindContext& ctx) {

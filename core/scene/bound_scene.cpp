@@ -100,7 +100,7 @@ class Binder {
     };
     ctx.texture_hint = [this](const std::string& texture) {
       const auto found = description_.unknown_textures.find(texture);
-      return found == description_.unknown_textures.end() ? std::string() : found->second;
+      return found == description_.unknown_textures.end() ? Remedy() : found->second;
     };
     ctx.spectrum_texture = [this, used_textures](int i, const std::string& parameter) {
       if (used_textures) used_textures->push_back({parameter, i});
@@ -111,16 +111,23 @@ class Binder {
 
   const PluginInfo* find(const Entity& entity, const std::string& category, const Unknown& unknown) {
     if (const PluginInfo* info = find_plugin(category, entity.plugin)) return info;
-    std::string remedy = entity.plugin == "ptex"
-                             ? "it needs the Ptex library, of which Debian 12 has no package; bake the "
-                               "texture to a picture and use \"imagemap\""
-                             : did_you_mean(entity.plugin, plugin_names(category));
+    Remedy remedy = entity.plugin == "ptex"
+                        ? Remedy(
+                              "it needs the Ptex library, of which Debian 12 has no package; bake the "
+                              "texture to a picture and use \"imagemap\"")
+                        : suggestion(entity.plugin, plugin_names(category));
     if (unknown.severity == Severity::Warning) {
-      if (!remedy.empty()) remedy += ' ';
-      remedy += unknown.consequence;
+      if (!remedy.text.empty()) remedy.text += ' ';
+      remedy.text += unknown.consequence;
     }
-    report({unknown.severity, ErrorClass::Scene, entity.plugin_at,
-            fmt::format("unknown {} \"{}\"", category, entity.plugin), remedy});
+    report({unknown.severity,
+            ErrorClass::Scene,
+            entity.plugin_at,
+            fmt::format("unknown {} \"{}\"", category, entity.plugin),
+            remedy.text,
+            {},
+            false,
+            remedy.slip});
     return unknown.fallback ? find_plugin(category, unknown.fallback) : nullptr;
   }
 
@@ -279,15 +286,21 @@ class Binder {
     }
     const bool known = is_pbrt_integrator(entity.plugin);
     const PluginInfo& stand_in = integrator_in_force(description_);
-    std::string remedy = "the picture is made with " + stand_in.name;
+    Remedy remedy = "the picture is made with " + stand_in.name;
     if (!known) {
       std::vector<std::string> names = plugin_names("integrator");
       names.insert(names.end(), kPbrtIntegrators.begin(), kPbrtIntegrators.end());
-      const std::string hint = did_you_mean(entity.plugin, names);
-      if (!hint.empty()) remedy += '\n' + hint;
+      const Remedy hint = suggestion(entity.plugin, names);
+      if (hint.slip.known()) remedy = {remedy.text + '\n' + hint.text, hint.slip};
     }
-    report({Severity::Warning, ErrorClass::Scene, entity.plugin_at,
-            fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"), remedy});
+    report({Severity::Warning,
+            ErrorClass::Scene,
+            entity.plugin_at,
+            fmt::format("integrator \"{}\" {}", entity.plugin, known ? "is not simulated" : "is unknown"),
+            remedy.text,
+            {},
+            false,
+            remedy.slip});
     std::vector<std::string> shared{"maxdepth", "pixelbounds"};
     if (known) shared.insert(shared.end(), {"rrthreshold", "lightsamplestrategy"});
     scene_.integrator = bind_as<Integrator>(entity, stand_in, keep_only(entity.params, shared));
