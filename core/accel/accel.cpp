@@ -8,6 +8,8 @@
 
 #include "core/accel/analytic_scene.h"
 #include "core/accel/blockers.h"
+#include "core/accel/built_mesh.h"
+#include "core/accel/device.h"
 #include "core/accel/embree.h"
 #include "core/accel/embree_geometry.h"
 #include "core/accel/near_emitter.h"
@@ -20,7 +22,8 @@
 namespace whit {
 
 struct Accel::Impl {
-  RTCDevice device = nullptr;
+  std::shared_ptr<AccelDevice> shared_device;
+  RTCDevice device = nullptr;  ///< The same.
   bool robust = true;
   int width = 4;  ///< Of the largest packets that Embree traces whole on this processor; it takes larger ones apart.
   RayRecord* record = nullptr;
@@ -28,7 +31,8 @@ struct Accel::Impl {
     RTCScene scene = nullptr;
     int first_shape = 0;  ///< Shape index of geometry 0: a group's shapes are numbered without gaps.
     int shape_count = 0;
-    int some_geometry = -1;  ///< A number of a geometry that is in the scene.
+    int some_geometry = -1;              ///< A number of a geometry that is in the scene.
+    std::shared_ptr<BuiltMesh> built{};  ///< Whose scene it is, where it came built.
   };
   std::vector<Group> groups;
   std::optional<AnalyticScene> analytic;  ///< Of the world; see there.
@@ -41,8 +45,6 @@ struct Accel::Impl {
   bool has_meshes = false, second_look = false;
   double small_scene = 0;
   double worth = 0;  ///< Of the whole scene, in triangles; see AccelOptions.
-  std::atomic<ssize_t> bytes{0};
-  std::string error;
 
   template <int N>
   void intersect(const RayLanes& rays, const Hits& hits, EmbreeQuery& query, bool also_analytic, int first,
@@ -58,25 +60,10 @@ struct Accel::Impl {
   void sweep_instances();
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
-  RTCScene new_scene() const {
-    RTCScene scene = rtcNewScene(device);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
-    set_flags(scene, RTC_SCENE_FLAG_NONE);
-    return scene;
-  }
-  void set_flags(RTCScene scene, RTCSceneFlags flags) const {
-    rtcSetSceneFlags(scene, robust ? flags | RTC_SCENE_FLAG_ROBUST : flags);
-  }
   void commit() const {
     for (size_t g = 1; g < groups.size(); ++g) rtcCommitScene(groups[g].scene);
     rtcCommitScene(groups[kWorld].scene);
     rtcCommitScene(analytic->scene());
-  }
-  /// Of what Embree was asked since the last call; "" when all went well.
-  std::string problem() const {
-    const RTCError code = rtcGetDeviceError(device);
-    if (code == RTC_ERROR_NONE && error.empty()) return {};
-    return fmt::format("the ray tracer could not be built: {}", error.empty() ? "unknown error" : error);
   }
   GeometryUser* new_user(const AnalyticShape* shape, const AlphaTest* alpha, const CurveView& curves = {}) {
     users.push_back(std::make_unique<GeometryUser>());
@@ -108,45 +95,35 @@ constexpr double kWorthOfAnalytic = 200, kWorthOfLarge = 1e9;
 Accel::Accel(const AccelOptions& options) : impl_(std::make_unique<Impl>()) {
   impl_->robust = options.robust, impl_->small_scene = options.small_scene;
   impl_->second_look = options.second_look;
-  impl_->device = rtcNewDevice(options.embree.empty() ? nullptr : options.embree.c_str());
-  const auto can = [this](RTCDeviceProperty p) { return rtcGetDeviceProperty(impl_->device, p) != 0; };
-  if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
-  if (can(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) impl_->width = 16;
-  rtcSetDeviceErrorFunction(
-      impl_->device,
-      [](void* self, RTCError, const char* text) { static_cast<Impl*>(self)->error = text ? text : "unknown"; },
-      impl_.get());
-  rtcSetDeviceMemoryMonitorFunction(
-      impl_->device,
-      [](void* self, ssize_t change, bool) {
-        static_cast<Impl*>(self)->bytes += change;
-        return true;
-      },
-      impl_.get());
+  impl_->shared_device = options.device ? options.device : make_accel_device(options.embree);
+  impl_->device = impl_->shared_device->get();
+  if (impl_->shared_device->can(RTC_DEVICE_PROPERTY_NATIVE_RAY8_SUPPORTED)) impl_->width = 8;
+  if (impl_->shared_device->can(RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED)) impl_->width = 16;
   add_group();
-  impl_->analytic.emplace(impl_->new_scene());
+  impl_->analytic.emplace(impl_->shared_device->new_scene(options.robust));
 }
 
 Accel::~Accel() {
-  for (auto& g : impl_->groups) rtcReleaseScene(g.scene);
+  for (auto& g : impl_->groups) {
+    if (!g.built) rtcReleaseScene(g.scene);
+  }
   impl_->analytic.reset();
-  rtcReleaseDevice(impl_->device);
 }
 
 int Accel::add_group() {
-  impl_->groups.push_back({impl_->new_scene(), 0, 0});
+  impl_->groups.push_back({impl_->shared_device->new_scene(impl_->robust)});
+  return static_cast<int>(impl_->groups.size()) - 1;
+}
+
+int Accel::add_built(std::shared_ptr<BuiltMesh> mesh, int shape) {
+  impl_->worth += static_cast<double>(mesh->triangle_count());
+  impl_->has_meshes = true;
+  impl_->groups.push_back({mesh->scene(), shape, 1, 0, mesh});
   return static_cast<int>(impl_->groups.size()) - 1;
 }
 
 void Accel::add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha) {
-  RTCGeometry g = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, mesh.positions, 0, 3 * sizeof(float),
-                             mesh.vertex_count);
-  rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, mesh.indices, 0, 3 * sizeof(uint32_t),
-                             mesh.triangle_count);
-  GeometryUser* const user = impl_->new_user(nullptr, alpha);
-  user->mesh = mesh;
-  rtcSetGeometryUserData(g, user);
+  RTCGeometry g = impl_->shared_device->new_mesh(mesh, *impl_->new_user(nullptr, alpha));
   if (alpha) set_alpha_filter(g);
   impl_->attach(group, g, shape);
   if (group == kWorld) impl_->blockers.add_mesh(mesh);
@@ -245,18 +222,22 @@ std::string Accel::build() {
   impl_->commit();
   impl_->sweep_instances();
   if (impl_->knows_blockers) impl_->blockers.build();
-  return impl_->problem();
+  return impl_->shared_device->problem();
 }
 
 std::string Accel::watch_ends() {
   for (const Impl::Group& group : impl_->groups) {
-    impl_->set_flags(group.scene, kQueryFilter);
+    if (group.built) {
+      group.built->watch_ends();
+      continue;
+    }
+    AccelDevice::set_flags(group.scene, impl_->robust, kQueryFilter);
     // A scene is built anew when something in it is committed, and not for flags alone.
     if (group.some_geometry >= 0)
       rtcCommitGeometry(rtcGetGeometry(group.scene, static_cast<unsigned>(group.some_geometry)));
   }
   impl_->commit();
-  return impl_->problem();
+  return impl_->shared_device->problem();
 }
 
 /// The hits of rays [first, last), at most N.
@@ -415,7 +396,7 @@ bool Accel::has_instances() const { return !impl_->instance_group.empty(); }
 
 std::array<void*, 2> Accel::embree_scenes() const { return {impl_->groups[kWorld].scene, impl_->analytic->scene()}; }
 
-size_t Accel::bytes() const { return static_cast<size_t>(std::max<ssize_t>(0, impl_->bytes)); }
+size_t Accel::bytes() const { return static_cast<size_t>(std::max<ssize_t>(0, impl_->shared_device->bytes)); }
 
 std::string accel_version() {
   return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);

@@ -52,6 +52,18 @@ struct Affine {
   float m[12];
 };
 
+/// Embree's device. Ray tracers that share one can share what is built on it.
+class AccelDevice;
+/// `config` is Embree's: "isa=avx2", or "" as a rule.
+std::shared_ptr<AccelDevice> make_accel_device(const std::string& config = {});
+
+/// A mesh that is built once and then traced by ray tracers that come and go, each of which may place it elsewhere.
+class BuiltMesh;
+/// Builds it, for ray tracers of the same device and robustness. `owner` keeps the arrays where they are. Where that fails
+/// the ray tracer says so that it is added to.
+std::shared_ptr<BuiltMesh> build_mesh(std::shared_ptr<AccelDevice> device, const MeshView& mesh,
+                                      std::shared_ptr<const void> owner, bool robust);
+
 struct AccelOptions {
   bool robust = true;  ///< Watertight traversal.
   /// Scenes worth at most so many triangles (an analytic shape is worth 200) are traced as if all rays were coherent:
@@ -59,7 +71,8 @@ struct AccelOptions {
   double small_scene = 1000;
   /// Camera rays may be aimed exactly at vertices, and are looked at again: core/accel/second_look.h.
   bool second_look = false;
-  std::string embree{};  ///< Configuration of Embree's device, e.g. "isa=avx2"; tests use it.
+  std::string embree{};                   ///< Configuration of Embree's device, e.g. "isa=avx2"; tests use it.
+  std::shared_ptr<AccelDevice> device{};  ///< Null: one of its own, of that configuration.
 };
 
 class RayRecord;
@@ -76,6 +89,9 @@ class Accel {
   /// Starts a new object group; returns its number.
   int add_group();
   void add_mesh(int group, const MeshView& mesh, int shape, const AlphaTest* alpha);
+  /// A new group that is this mesh alone; returns its number. Two ray tracers that have it must not be built at once, nor
+  /// one be built while another traces.
+  int add_built(std::shared_ptr<BuiltMesh> mesh, int shape);
   /// Triangles that are traced in double precision. They must outlive the Accel.
   void add_exact(int group, std::span<const ExactTriangle> triangles, int shape, const AlphaTest* alpha);
   void add_curves(int group, const CurveView& curves, int shape, const AlphaTest* alpha);
@@ -107,7 +123,7 @@ class Accel {
   /// Embree's scenes of the world, each an RTCScene: analytic shapes are in the second.
   std::array<void*, 2> embree_scenes() const;
 
-  /// Bytes Embree holds.
+  /// Bytes Embree holds, with all that its device is shared with.
   size_t bytes() const;
 
  private:

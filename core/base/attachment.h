@@ -25,6 +25,9 @@ class MeshSource : public Attachment {
   /// Fills in `out`, in object space; no value of it is NaN or infinite, and all indices are valid. Returns "", or why
   /// there is none, with the file and the place in it: "model.glb: /meshes/3/primitives/0: ...".
   virtual std::string read(MeshData& out) const = 0;
+
+  /// Equal for sources whose meshes are the same, as long as one of them lives; "" where that is not known.
+  virtual std::string identity() const { return {}; }
 };
 
 /// An encoded picture in memory (PNG, JPEG, WebP, ...).

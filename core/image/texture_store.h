@@ -103,6 +103,10 @@ class TextureStore {
 
   TextureStatistics statistics() const;
 
+  /// Whether the files of all textures are still what they were when these were added, by size and time. Otherwise it is
+  /// time for another store.
+  bool is_current() const;
+
   /// Reads the pictures of all textures and keeps none: errors() then knows every one that cannot be decoded.
   void read_all();
 

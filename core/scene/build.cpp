@@ -7,6 +7,7 @@
 #include "core/scene/build_geometry.h"
 #include "core/scene/build_groups.h"
 #include "core/scene/build_lights.h"
+#include "core/scene/kept_geometry.h"
 #include "core/scene/motion.h"
 #include "core/scene/read.h"
 
@@ -108,11 +109,18 @@ std::unique_ptr<Scene> build_scene(BoundScene bound, EffectPlan plan, const Buil
   scene->plan = std::move(plan);
   const bool everything = scene->plan.everything_on;
   scene->skip_lights = !everything;
-  BuildContext context{*scene, textures, diagnostics};
+  BuildContext context{*scene, textures, diagnostics, options.kept, options.robust_traversal};
+  if (options.kept) {
+    options.kept->begin();
+    context.placed.resize(context.description().objects.size());
+    for (const InstanceDescription& instance : context.description().instances)
+      ++context.placed[static_cast<size_t>(instance.object)];
+  }
   prepare_sampling(context, options, *scene);
   if (!options_complete(scene->bound)) return nullptr;
-  scene->accel = std::make_unique<Accel>(
-      AccelOptions{.robust = options.robust_traversal, .second_look = scene->sampler().is_regular()});
+  scene->accel = std::make_unique<Accel>(AccelOptions{.robust = options.robust_traversal,
+                                                      .second_look = scene->sampler().is_regular(),
+                                                      .device = options.kept ? options.kept->device() : nullptr});
   times.inputs = laps.lap();
   Groups groups = load_groups(context, scene->bound.shapes);
   times.geometry = laps.lap();

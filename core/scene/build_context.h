@@ -14,6 +14,9 @@ struct BuildContext {
   const Scene& scene;  ///< As far as it is built; a step that builds on is handed what it changes.
   TextureStore& textures;
   Diagnostics& diagnostics;
+  KeptGeometry* kept = nullptr;         ///< BuildOptions::kept
+  bool robust = true;                   ///< BuildOptions::robust_traversal
+  std::vector<int> placed = {};         ///< How often each object is placed, where geometry is kept.
   double scene_radius = 1;              ///< In render space, from when that is chosen.
   Elapsed* reading_pictures = nullptr;  ///< PrepareContext::reading_pictures, while lights are prepared.
 

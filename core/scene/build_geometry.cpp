@@ -15,9 +15,10 @@ namespace {
 
 /// What is left of a loaded shape in its group's space; analytic shapes have neither.
 struct BakedShape {
-  std::unique_ptr<Mesh> mesh, huge;
+  std::shared_ptr<const Mesh> mesh, huge;
   std::unique_ptr<Curves> curves;
-  size_t degenerate = 0;  ///< Triangles left out.
+  size_t degenerate = 0;             ///< Triangles left out.
+  std::shared_ptr<BuiltMesh> built;  ///< Of a mesh that is kept.
 };
 
 /// Triangles without area: there can be some in every mesh of thousands, so they are counted and reported once.
@@ -63,10 +64,26 @@ struct Baking {
 
 Mat4d to_group_space(const Group& group, const LoadedShape& shape) { return shape.to_group * group.space.from_world(); }
 
+MeshView view_of(const Mesh& mesh) {
+  return {mesh.positions.data(), mesh.positions.size() / 3, mesh.indices.data(), mesh.triangle_count()};
+}
+
+/// Builds a mesh for this and later builds, which must have been baked whole.
+void keep(const BuildContext& context, const Group& group, const LoadedShape& loaded, BakedShape& baked) {
+  KeptGeometry& kept = *context.kept;
+  baked.built = build_mesh(kept.device(), view_of(*baked.mesh), baked.mesh, context.robust);
+  kept.put(loaded.key, std::make_shared<KeptMesh>(KeptMesh{baked.mesh, baked.built, group.space, loaded.bounds,
+                                                           baked.degenerate, loaded.said}));
+}
+
 /// The geometry in its group's space; what it was made from is freed.
-BakedShape bake(const Group& group, const Shape* plugin, LoadedShape& loaded) {
+BakedShape bake(const BuildContext& context, const Group& group, const Shape* plugin, LoadedShape& loaded) {
   const Mat4d m = to_group_space(group, loaded);
   BakedShape baked;
+  if (loaded.kept) {
+    baked.mesh = loaded.kept->mesh, baked.built = loaded.kept->built, baked.degenerate = loaded.kept->degenerate;
+    return baked;
+  }
   if (dynamic_cast<const MeshShape*>(plugin)) {
     baked.mesh = bake_mesh(loaded.mesh, m, baked.degenerate);
     baked.degenerate += loaded.mesh.degenerate;
@@ -74,6 +91,7 @@ BakedShape bake(const Group& group, const Shape* plugin, LoadedShape& loaded) {
       baked.huge = bake_huge(loaded.huge, loaded.mesh, m, lost);
       baked.degenerate += lost;
     }
+    if (!loaded.key.empty() && !baked.huge && !baked.mesh->indices.empty()) keep(context, group, loaded, baked);
   } else if (dynamic_cast<const CurveShape*>(plugin)) {
     baked.curves = bake_curves(loaded.curves, m);
   }
@@ -90,7 +108,7 @@ std::vector<BakedShape> bake_all(const BuildContext& context, Groups& groups) {
   std::vector<BakedShape> baked(all.size());
   tbb::parallel_for(size_t{0}, all.size(), [&](size_t i) {
     const auto& [group, loaded] = all[i];
-    baked[i] = bake(*group, context.scene.bound.shapes[loaded->description].plugin.get(), *loaded);
+    baked[i] = bake(context, *group, context.scene.bound.shapes[loaded->description].plugin.get(), *loaded);
   });
   return baked;
 }
@@ -113,7 +131,8 @@ void add_shape(const BuildContext& context, const Group& group, const LoadedShap
   if (baked.mesh) {
     baking.degenerate.add(baked.degenerate, d.where);
     if (baked.mesh->indices.empty()) return;
-    shape.mesh = scene.meshes.emplace_back(std::move(baked.mesh)).get();
+    scene.meshes.push_back(baked.mesh);
+    shape.mesh = baked.mesh.get();
     scene.attributes |= {!shape.mesh->uvs1.empty(), !shape.mesh->colors.empty()};
   } else if (baked.curves) {
     shape.curves = scene.curves.emplace_back(std::move(baked.curves)).get();
@@ -154,9 +173,7 @@ void attach(Accel& accel, int group, const SceneShape& shape, int index, const A
   if (shape.mesh && !shape.mesh->exact.empty()) {
     accel.add_exact(group, shape.mesh->exact, index, alpha);
   } else if (shape.mesh) {
-    const Mesh& m = *shape.mesh;
-    accel.add_mesh(group, {m.positions.data(), m.positions.size() / 3, m.indices.data(), m.triangle_count()}, index,
-                   alpha);
+    accel.add_mesh(group, view_of(*shape.mesh), index, alpha);
   } else if (shape.curves) {
     accel.add_curves(group, shape.curves->view(), index, alpha);
   } else {
@@ -244,15 +261,23 @@ BakedGeometry bake_groups(const BuildContext& context, Groups& groups, Scene& sc
   Baking baking;
   for (Group& group : groups.all) {
     if (group.shapes.empty()) continue;
-    group.accel_group = &group == &groups.world() ? Accel::kWorld : scene.accel->add_group();
     const size_t first = scene.shapes.size();
+    if (next->built) {
+      const std::shared_ptr<BuiltMesh> built = next->built;
+      add_shape(context, group, group.shapes[0], std::move(*next++), baking, scene);
+      if (scene.shapes.size() > first) group.accel_group = scene.accel->add_built(built, static_cast<int>(first));
+      group.shapes = {};
+      continue;
+    }
+    group.accel_group = &group == &groups.world() ? Accel::kWorld : scene.accel->add_group();
     for (const LoadedShape& loaded : group.shapes) {
       BakedShape shape = std::move(*next++);
-      std::unique_ptr<Mesh> huge = std::move(shape.huge);
+      std::shared_ptr<const Mesh> huge = std::move(shape.huge);
       const bool only_huge = huge && shape.mesh->indices.empty();
       const size_t degenerate = only_huge ? shape.degenerate : 0;
       if (!only_huge) add_shape(context, group, loaded, std::move(shape), baking, scene);
-      if (huge) add_shape(context, group, loaded, {std::move(huge), nullptr, nullptr, degenerate}, baking, scene);
+      if (huge)
+        add_shape(context, group, loaded, {std::move(huge), nullptr, nullptr, degenerate, nullptr}, baking, scene);
     }
     attach_shapes(context, group, first, baking.plugins, scene);
     group.shapes = {};

@@ -15,6 +15,20 @@ namespace {
 
 // ---- Reading ----
 
+/// Objects that are placed more often are kept no more: each placing of each of their meshes would be an instance.
+constexpr int kMostPlaces = 100;
+
+/// Whether a mesh is the same wherever it stands, and asks nothing of the scene when rays meet it.
+bool may_be_kept(const BuildContext& context, const ShapeDescription& d, const Shape& shape) {
+  if (!context.kept || d.area_light >= 0 || shape.is_cut_out()) return false;
+  const TransformPair placement = context.transform(d.transform);
+  // What is bent further than this cannot be an instance in floats.
+  constexpr double kLeastScale = 1e-6, kLargestScale = 1e6;
+  const double scale = std::cbrt(std::abs(placement.start.determinant()));
+  if (placement.animated() || !(scale > kLeastScale && scale < kLargestScale)) return false;
+  return d.object < 0 || context.placed[static_cast<size_t>(d.object)] <= kMostPlaces;
+}
+
 /// Reads or makes the geometry of a shape and finds its bounds, which stay empty when there is none.
 void load_shape(const BuildContext& context, Bound<Shape>& bound, LoadedShape& loaded, Diagnostics& reports) {
   const ShapeDescription& d = context.shape(loaded.description);
@@ -22,10 +36,24 @@ void load_shape(const BuildContext& context, Bound<Shape>& bound, LoadedShape& l
   if (!bound.plugin) return;
   Shape& shape = *bound.plugin;
   const TransformPair placement = context.transform(d.transform);
-  if (!placement.animated()) loaded.to_group = placement.start;
   const PrepareContext preparation = context.preparation(d.where, reports);
+  if (auto* mesh = dynamic_cast<MeshShape*>(&shape); mesh && may_be_kept(context, d, shape)) {
+    loaded.key = mesh_key(d, context.description().folder, preparation.attributes);
+    if (!loaded.key.empty()) loaded.kept = context.kept->find(loaded.key);
+    if (loaded.kept) {
+      loaded.bounds = loaded.kept->bounds;
+      for (Diagnostic said : loaded.kept->said.all()) {
+        said.where = d.where;  // It was said of a text that is no more.
+        reports.add(std::move(said));
+      }
+      return;
+    }
+  }
+  if (!placement.animated()) loaded.to_group = placement.start;
   if (auto* mesh = dynamic_cast<MeshShape*>(&shape)) {
     if (!mesh->build_mesh(preparation, loaded.mesh)) return;
+    if (loaded.mesh.indices.size() < 3 * KeptGeometry::kLeast) loaded.key = {};
+    if (!loaded.key.empty()) loaded.to_group = Mat4d(), loaded.said = reports;
     if (!preparation.attributes.uvs1) loaded.mesh.uvs1 = {};
     if (!preparation.attributes.colors) loaded.mesh.colors = {};
     loaded.bounds = mesh_bounds(loaded.mesh, loaded.to_group);
@@ -52,7 +80,8 @@ Groups read_groups(const BuildContext& context, std::vector<Bound<Shape>>& shape
   for (LoadedShape& shape : loaded) {
     const ShapeDescription& d = context.shape(shape.description);
     Group* group = &groups.all[static_cast<size_t>(d.object + 1)];
-    if (const TransformPair placement = context.transform(d.transform); placement.animated()) {
+    const TransformPair placement = context.transform(d.transform);
+    if (placement.animated() || !shape.key.empty()) {
       groups.moving[d.object].push_back(groups.all.size());
       group = &groups.all.emplace_back();
       group->motion = placement;
@@ -136,7 +165,9 @@ void leave_out_far_things(const BuildContext& context, Groups& groups) {
     if (group.shapes.empty()) continue;
     const SourcePos where = context.shape(group.shapes[0].description).where;
     const double extent = placed(group, *group.motion);
-    if (is_too_far(context, extent, world.horizon, where, "this shape moves")) group.shapes.clear(), group.bounds = {};
+    if (is_too_far(context, extent, world.horizon, where,
+                   group.motion->animated() ? "this shape moves" : "this shape reaches"))
+      group.shapes.clear(), group.bounds = {};
   }
   for (size_t i = 0; i < instances.size(); ++i) {
     if (is_too_far(context, instance_extent(instances[i]), world.horizon, instances[i].where, "this instance is"))
@@ -280,6 +311,7 @@ WorldSpace choose_spaces(const BuildContext& context, Groups& groups) {
     if (group.bounds.isEmpty()) continue;
     group.space.origin = group.near.center();
     group.space.scale = sane_scale(group.near.size().length() / 2);
+    if (!group.shapes.empty() && group.shapes[0].kept) group.space = group.shapes[0].kept->space;
   }
   return world;
 }

@@ -3,13 +3,16 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <unordered_set>
 #include <vector>
 
 #include "core/scene/build_context.h"
 #include "core/scene/far.h"
+#include "core/scene/kept_geometry.h"
 
 namespace whit {
 
@@ -19,13 +22,16 @@ struct LoadedShape {
   Mat4d to_group;          ///< From object space to where the group's shapes were described.
   MeshData mesh, huge;     ///< Two parts of one mesh: core/scene/huge.h.
   CurveData curves;
-  Box3d bounds;  ///< Where the group's shapes were described.
+  Box3d bounds;                          ///< Where the group's shapes were described.
+  std::string key;                       ///< Of a mesh that is to be kept (core/scene/kept_geometry.h), else "".
+  Diagnostics said;                      ///< Of reading that.
+  std::shared_ptr<const KeptMesh> kept;  ///< What was; `mesh` is then empty.
 };
 
-/// The world, an object definition, or one moving shape.
+/// The world, an object definition, or one shape that moves, or that is kept wherever it stands.
 struct Group {
   std::vector<LoadedShape> shapes;
-  std::optional<TransformPair> motion;  ///< Of a group that is one shape in object space, which moves.
+  std::optional<TransformPair> motion;  ///< Of a group that is one shape in object space: where it stands.
   Vec3d middle{0, 0, 0};                ///< From where distances are measured.
   RenderSpace space;
   Box3d bounds, near;   ///< Of all, and without what is huge or far: floats are made for that.
@@ -34,8 +40,8 @@ struct Group {
 };
 
 struct Groups {
-  std::vector<Group> all;                     ///< 0 the world, then one per object, then one per moving shape.
-  std::map<int, std::vector<size_t>> moving;  ///< Groups of moving shapes, by object (-1: the world).
+  std::vector<Group> all;  ///< 0 the world, then one per object, then one per shape that has its own.
+  std::map<int, std::vector<size_t>> moving;  ///< Groups of such shapes, by object (-1: the world).
   std::unordered_set<size_t> left_out;        ///< Instances that are too far away.
 
   Group& world() { return all[0]; }

@@ -98,6 +98,8 @@ struct SceneEnvironment {
   int number = -1;  ///< Index into Scene::lights; -1 where it is not sampled.
 };
 
+class KeptGeometry;
+
 /// The numbers of the render that the command line may override.
 struct BuildOptions {
   int samples_per_pixel = 0;  ///< 0: the scene's.
@@ -105,8 +107,9 @@ struct BuildOptions {
   uint32_t seed = 0;
   bool quick = false;  ///< pbrt's --quick: a quarter of the resolution, one sample.
   bool robust_traversal = true;
-  bool keep_going = false;  ///< Build what is usable despite errors.
-  bool only_check = false;  ///< Only for what there is to say: nothing can be traced.
+  bool keep_going = false;       ///< Build what is usable despite errors.
+  bool only_check = false;       ///< Only for what there is to say: nothing can be traced.
+  KeptGeometry* kept = nullptr;  ///< Meshes of earlier builds, for later ones: core/scene/kept_geometry.h.
 };
 
 /// Where the time went that build_scene() took. The parts are all of it.
@@ -125,7 +128,7 @@ struct Scene {
   RenderSpace space;
   BoundScene bound;
   EffectPlan plan;
-  std::vector<std::unique_ptr<Mesh>> meshes;
+  std::vector<std::shared_ptr<const Mesh>> meshes;
   std::vector<std::unique_ptr<Curves>> curves;
   std::vector<std::unique_ptr<AlphaTest>> alpha_tests;
   std::vector<const Material*> materials;

@@ -47,6 +47,22 @@ void check_build(const EffectPlan& plan, Diagnostics& diagnostics) {
   });
 }
 
+std::shared_ptr<TextureStore> new_textures(size_t bytes) {
+  auto textures = std::make_shared<TextureStore>();
+  textures->set_memory_limit(bytes);
+  return textures;
+}
+
+BuiltWorld build_with(std::shared_ptr<TextureStore> textures, PlannedWorld planned, const BuildOptions& options) {
+  const Stopwatch watch;
+  BuiltWorld out;
+  out.textures = std::move(textures);
+  out.keep_going = options.keep_going;
+  out.scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, *out.textures, out.said);
+  out.elapsed = watch.elapsed();
+  return out;
+}
+
 }  // namespace
 
 ParsedFile read_scene_file(const std::string& path, const ReadOptions& options) {
@@ -97,14 +113,14 @@ Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics
 }
 
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options, size_t texture_bytes) {
-  const Stopwatch watch;
-  BuiltWorld out;
-  out.textures = std::make_unique<TextureStore>();
-  out.textures->set_memory_limit(texture_bytes);
-  out.keep_going = options.keep_going;
-  out.scene = build_scene(std::move(planned.bound), std::move(planned.plan), options, *out.textures, out.said);
-  out.elapsed = watch.elapsed();
-  return out;
+  return build_with(new_textures(texture_bytes), std::move(planned), options);
+}
+
+BuiltWorld rebuild_world(PlannedWorld planned, BuildOptions options, KeptParts& kept, size_t texture_bytes) {
+  options.kept = &kept.geometry;
+  if (!kept.textures || kept.textures->failed() || !kept.textures->is_current())
+    kept.textures = new_textures(texture_bytes);
+  return build_with(kept.textures, std::move(planned), options);
 }
 
 Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed) {

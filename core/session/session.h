@@ -15,6 +15,7 @@
 #include "core/gltf/describe.h"
 #include "core/image/texture_store.h"
 #include "core/render/render.h"
+#include "core/scene/kept_geometry.h"
 #include "core/scene/scene.h"
 #include "parser/parse.h"
 
@@ -54,7 +55,7 @@ Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics
 
 /// A world that can be traced, as often as one likes.
 struct BuiltWorld {
-  std::unique_ptr<TextureStore> textures;
+  std::shared_ptr<TextureStore> textures;
   std::unique_ptr<Scene> scene;  ///< Null when nothing can be rendered.
   bool keep_going = false;       ///< BuildOptions::keep_going, for render_world().
   Diagnostics said;
@@ -62,6 +63,16 @@ struct BuiltWorld {
 };
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options = {},
                        size_t texture_bytes = TextureStore::kDefaultMemory);
+
+/// What stays from one build of a scene to the next, for previews: large meshes, and decoded textures as long as their
+/// files stay what they are. One build at a time, and none while a picture is made of an earlier one.
+struct KeptParts {
+  KeptGeometry geometry;
+  std::shared_ptr<TextureStore> textures;
+};
+/// build_world() with them; `options.kept` is set here.
+BuiltWorld rebuild_world(PlannedWorld planned, BuildOptions options, KeptParts& kept,
+                         size_t texture_bytes = TextureStore::kDefaultMemory);
 
 /// Another number of samples per pixel (as the sampler rounds it) and another seed, for what is rendered from now on: the
 /// picture is that of a world that was built with them. Not while the world is being rendered.
