@@ -1,9 +1,24 @@
 #include "core/gltf/attached_primitive.h"
 
+#include <fmt/format.h>
+
 namespace whit::gltf {
 
 std::string AttachedPrimitive::read(MeshData& out) const {
   return read_primitive(*model_, primitive_, pose_, needs_, out);
+}
+
+/// The model itself is named by where it is, for it is kept as long as this is.
+std::string AttachedPrimitive::identity() const {
+  std::string out;
+  const auto add = [&out](const void* bytes, size_t count) { out.append(static_cast<const char*>(bytes), count); };
+  const void* const named[] = {model_.get(), &primitive_};
+  add(named, sizeof named);
+  out += fmt::format("{}{}{}{}{} {}:", needs_.tangents, needs_.uv0, needs_.uv1, needs_.colors, needs_.tangent_uv_set,
+                     pose_.weights.size());
+  add(pose_.weights.data(), pose_.weights.size() * sizeof(double));
+  for (const Mat4d& joint : pose_.joints) add(&joint, sizeof joint);
+  return out;
 }
 
 MeshNeeds needs_of(const Model& model, int index, bool other) {

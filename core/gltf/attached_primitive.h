@@ -15,6 +15,7 @@ class AttachedPrimitive final : public MeshSource {
   AttachedPrimitive(std::shared_ptr<const Model> model, const Primitive& primitive, Pose pose, const MeshNeeds& needs)
       : model_(std::move(model)), primitive_(primitive), pose_(std::move(pose)), needs_(needs) {}
   std::string read(MeshData& out) const override;
+  std::string identity() const override;
 
  private:
   const std::shared_ptr<const Model> model_;

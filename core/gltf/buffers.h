@@ -72,6 +72,7 @@ class Buffers {
   std::vector<Bytes> buffers;
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
+  std::vector<std::string> files;  ///< Of buffers outside of the model's own.
 
   /// Makes room for what is decompressed; when all views are there.
   void prepare() { decoded_ = std::make_unique<Decoded[]>(views.size()); }

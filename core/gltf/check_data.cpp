@@ -69,6 +69,7 @@ class DataReader {
       out = {*data, data};
       return;
     }
+    out_.files.push_back(resource->file);
     auto file = std::make_shared<const MappedFile>(resource->file);
     if (!file->error().empty()) {
       item.problems().file_error(item.place("uri"),

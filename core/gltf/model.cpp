@@ -48,6 +48,7 @@ std::shared_ptr<const Model> load_model(const std::string& path, const std::stri
   convert_scenes(*typed, *model);
   convert_meshes(*typed, *model);
   convert_materials(*typed, *model);
+  model->files = buffers->files;
   model->buffers = std::move(buffers);
   return model;
 }

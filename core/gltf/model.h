@@ -202,6 +202,7 @@ struct Model {
   std::vector<Light> lights;
   std::vector<std::string> variants;  ///< Names, of KHR_materials_variants.
   std::shared_ptr<const Buffers> buffers;
+  std::vector<std::string> files;  ///< That are read beside its own, but for pictures.
 
   /// "model.glb: /meshes/3"
   std::string at(std::string_view place) const;

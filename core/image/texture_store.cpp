@@ -1,7 +1,5 @@
 #include "core/image/texture_store.h"
 
-#include <sys/stat.h>
-
 #include <algorithm>
 #include <array>
 #include <map>
@@ -11,6 +9,7 @@
 
 #include "core/base/vec.h"
 #include "core/image/texture_memory.h"
+#include "core/plugin/file_state.h"
 
 namespace whit {
 
@@ -30,20 +29,6 @@ TextureSpec source_of(TextureSpec spec) {
   if (spec.channel == TextureChannel::Alpha) spec.gamma = false;
   if (spec.bytes) spec.path = spec.bytes->name;
   return spec;
-}
-
-// What tells that a file is another; size -1 where there is none.
-struct FileState {
-  int64_t size = -1;
-  int64_t seconds = 0, nanoseconds = 0;
-  uint64_t inode = 0;
-  bool operator==(const FileState&) const = default;
-};
-
-FileState state_of(const std::string& path) {
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return {status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_ino};
 }
 
 }  // namespace
@@ -135,7 +120,7 @@ struct TextureStore::Textures {
 bool TextureStore::is_current() const {
   const std::lock_guard lock(textures_->mutex);
   return std::all_of(textures_->files.begin(), textures_->files.end(),
-                     [](const auto& file) { return state_of(file.first) == file.second; });
+                     [](const auto& file) { return file_state(file.first) == file.second; });
 }
 
 TextureStore::TextureStore()
@@ -150,7 +135,7 @@ const ImageTexture* TextureStore::add(const TextureSpec& spec, SourcePos where) 
   const std::lock_guard lock(textures_->mutex);
   TextureSource*& source = textures_->sources[source_key];
   if (!source) source = &memory_->add(decoded, where);
-  if (!spec.bytes) textures_->files.try_emplace(spec.path, state_of(spec.path));
+  if (!spec.bytes) textures_->files.try_emplace(spec.path, file_state(spec.path));
   auto& texture = textures_->textures[{source_key, spec.kind, spec.channel, spec.filter, spec.max_anisotropy}];
   if (!texture) texture.reset(new ImageTexture(*memory_, *source, spec));
   return texture.get();

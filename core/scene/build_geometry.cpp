@@ -72,8 +72,9 @@ MeshView view_of(const Mesh& mesh) {
 void keep(const BuildContext& context, const Group& group, const LoadedShape& loaded, BakedShape& baked) {
   KeptGeometry& kept = *context.kept;
   baked.built = build_mesh(kept.device(), view_of(*baked.mesh), baked.mesh, context.robust);
-  kept.put(loaded.key, std::make_shared<KeptMesh>(KeptMesh{baked.mesh, baked.built, group.space, loaded.bounds,
-                                                           baked.degenerate, loaded.said}));
+  kept.put(loaded.key,
+           std::make_shared<KeptMesh>(KeptMesh{baked.mesh, baked.built, group.space, loaded.bounds, baked.degenerate,
+                                               loaded.said, context.shape(loaded.description).mesh}));
 }
 
 /// The geometry in its group's space; what it was made from is freed.

@@ -1,11 +1,11 @@
 #include "core/scene/kept_geometry.h"
 
-#include <sys/stat.h>
-
 #include <cstring>
 #include <string_view>
 #include <type_traits>
 #include <utility>
+
+#include "core/plugin/file_state.h"
 
 namespace whit {
 namespace {
@@ -28,13 +28,11 @@ void append_text(std::string& key, std::string_view text) {
 /// A name of a file stands for what is in it; another text stands for itself, for there is no file of that name.
 void append_string(std::string& key, const std::string& text, const std::string& folder) {
   append_text(key, text);
-  struct stat status = {};
-  const std::string path = !text.empty() && text[0] == '/' ? text : folder + '/' + text;
-  if (::stat(path.c_str(), &status) != 0) return;
-  append_number(key, status.st_size);
-  append_number(key, status.st_mtim.tv_sec);
-  append_number(key, status.st_mtim.tv_nsec);
-  append_number(key, status.st_ino);
+  const FileState state = file_state(!text.empty() && text[0] == '/' ? text : folder + '/' + text);
+  append_number(key, state.size);
+  append_number(key, state.seconds);
+  append_number(key, state.nanoseconds);
+  append_number(key, state.inode);
 }
 
 /// Long lists of numbers by their hash and length: a key is compared far more often than made.

@@ -19,9 +19,10 @@ struct KeptMesh {
   std::shared_ptr<const Mesh> mesh;  ///< In `space`.
   std::shared_ptr<BuiltMesh> built;
   RenderSpace space;
-  Box3d bounds;           ///< In object space.
-  size_t degenerate = 0;  ///< Triangles that were left out.
-  Diagnostics said = {};  ///< When it was read.
+  Box3d bounds;                                   ///< In object space.
+  size_t degenerate = 0;                          ///< Triangles that were left out.
+  Diagnostics said = {};                          ///< When it was read.
+  std::shared_ptr<const MeshSource> source = {};  ///< Whose identity is in the key, which names it as long as it lives.
 };
 
 /// Given to builds one after another by BuildOptions::kept. Large meshes of those are instances, each of its own: the

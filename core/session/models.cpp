@@ -100,12 +100,37 @@ std::shared_ptr<const gltf::Model> ModelStore::load(const std::string& path, con
                                                     Diagnostics& said) {
   const auto [found, is_new] = loaded_.try_emplace(path);
   Loaded& loaded = found->second;
-  if (is_new) loaded.model = gltf::load_model(path, shown, options_, where, loaded.said);
+  if (is_new) {
+    // Before it is read: a change meanwhile is then noticed.
+    loaded.files[path] = file_state(path);
+    loaded.model = gltf::load_model(path, shown, options_, where, loaded.said);
+    if (loaded.model)
+      for (const std::string& file : loaded.model->files) loaded.files.try_emplace(file, file_state(file));
+  }
   if (!loaded.reported) said.append(loaded.said);
   else if (!loaded.model)
     said.error(where, fmt::format("{} cannot be read, as has been said where it is first placed", shown));
   loaded.reported = true;
   return loaded.model;
+}
+
+bool ModelStore::refresh() {
+  const size_t forgotten = std::erase_if(loaded_, [](const auto& entry) {
+    const Loaded& loaded = entry.second;
+    return !loaded.model || std::any_of(loaded.files.begin(), loaded.files.end(),
+                                        [](const auto& file) { return file_state(file.first) != file.second; });
+  });
+  attachments_.clear();
+  notes_.clear();
+  placed_ = 0;
+  return forgotten == 0;
+}
+
+std::vector<std::string> ModelStore::files() const {
+  std::vector<std::string> out;
+  for (const auto& [path, loaded] : loaded_)
+    for (const auto& [file, state] : loaded.files) out.push_back(file);
+  return out;
 }
 
 void ModelStore::begin() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/gltf/describe.h"
+#include "core/plugin/file_state.h"
 #include "parser/models.h"
 
 namespace whit {
@@ -23,6 +24,13 @@ class ModelStore final : public ModelReader {
   std::optional<ModelStatements> read(const ModelRequest& request, Diagnostics& said) override;
   std::shared_ptr<const Attachment> attachment(const std::string& name) const override;
 
+  /// For another reading of the scene: forgets the models of which a file has changed since, and those with errors. False
+  /// when there were any. Attachments that were handed out stay what they are.
+  bool refresh();
+
+  /// The files that models were read from.
+  std::vector<std::string> files() const;
+
   /// A whole scene that shows a model; nothing after errors.
   std::optional<gltf::Description> scene_of(const std::string& path, const gltf::Selection& selection,
                                             Diagnostics& said);
@@ -35,6 +43,7 @@ class ModelStore final : public ModelReader {
     std::shared_ptr<const gltf::Model> model;  ///< Null when there is an error.
     Diagnostics said;
     bool reported = false;  ///< Since begin().
+    std::map<std::string, FileState> files;
   };
   std::shared_ptr<const gltf::Model> load(const std::string& path, const std::string& shown, SourcePos where,
                                           Diagnostics& said);

@@ -15,10 +15,12 @@ ParsedFile parsed_file(const ReadOptions& options,
                        const std::function<ParseResult(Sources&, ModelStore&, const ParseOptions&)>& parse) {
   const Stopwatch watch;
   ParsedFile file;
-  ModelStore models(options.allow_outside);
+  ModelStore of_this_reading(options.allow_outside);
+  ModelStore& models = options.models ? *options.models : of_this_reading;
   ParseResult parsed = parse(*file.sources, models, {.read_unplaced = options.read_unplaced, .models = &models});
   file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
   file.notes = models.notes();
+  file.model_files = models.files();
   file.elapsed = watch.elapsed();
   return file;
 }
@@ -114,6 +116,17 @@ Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics
 
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options, size_t texture_bytes) {
   return build_with(new_textures(texture_bytes), std::move(planned), options);
+}
+
+KeptParts::KeptParts() = default;
+KeptParts::~KeptParts() = default;
+
+ParsedFile reread_scene_file(const std::string& path, ReadOptions options, KeptParts& kept) {
+  if (!kept.models) kept.models = std::make_unique<ModelStore>(options.allow_outside);
+  // Pictures of a model that is read again would be decoded textures beside those of its old self.
+  else if (!kept.models->refresh()) kept.textures.reset();
+  options.models = kept.models.get();
+  return read_scene_file(path, options);
 }
 
 BuiltWorld rebuild_world(PlannedWorld planned, BuildOptions options, KeptParts& kept, size_t texture_bytes) {

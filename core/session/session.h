@@ -21,19 +21,23 @@
 
 namespace whit {
 
+class ModelStore;
+
 /// A parsed file with its text, to which all that is made of it refers: it must outlive that.
 struct ParsedFile {
   std::unique_ptr<Sources> sources = std::make_unique<Sources>();
   std::vector<SceneDescription> worlds;  ///< One for each WorldBegin.
   uint64_t bytes = 0;                    ///< Of text, included files counted each time.
+  std::vector<std::string> model_files;  ///< That the models it places were read from, but for their pictures.
   std::vector<std::string> notes;        ///< What people may want to know of how models are shown.
   Diagnostics said;
   Elapsed elapsed;
 };
 struct ReadOptions {
-  bool read_unplaced = false;  ///< ParseOptions::read_unplaced.
-  gltf::Selection model = {};  ///< Of a model's file that is read as a scene; of no other may anything be selected.
-  bool allow_outside = false;  ///< Models may name files outside of their folder.
+  bool read_unplaced = false;    ///< ParseOptions::read_unplaced.
+  gltf::Selection model = {};    ///< Of a model's file that is read as a scene; of no other may anything be selected.
+  bool allow_outside = false;    ///< Models may name files outside of their folder.
+  ModelStore* models = nullptr;  ///< Has them from earlier readings; null: they are read for this one.
 };
 /// A .pbrt file, or a glTF model, of which a scene is made.
 ParsedFile read_scene_file(const std::string& path, const ReadOptions& options = {});
@@ -64,12 +68,18 @@ struct BuiltWorld {
 BuiltWorld build_world(PlannedWorld planned, const BuildOptions& options = {},
                        size_t texture_bytes = TextureStore::kDefaultMemory);
 
-/// What stays from one build of a scene to the next, for previews: large meshes, and decoded textures as long as their
-/// files stay what they are. One build at a time, and none while a picture is made of an earlier one.
+/// What stays from one reading and building of a scene to the next, for previews: models, large meshes, and decoded
+/// textures, as long as their files stay what they are. One build at a time, and none while a picture is made of an
+/// earlier one.
 struct KeptParts {
+  KeptParts();
+  ~KeptParts();
+  std::unique_ptr<ModelStore> models;
   KeptGeometry geometry;
   std::shared_ptr<TextureStore> textures;
 };
+/// read_scene_file() with them; `options.models` is set here.
+ParsedFile reread_scene_file(const std::string& path, ReadOptions options, KeptParts& kept);
 /// build_world() with them; `options.kept` is set here.
 BuiltWorld rebuild_world(PlannedWorld planned, BuildOptions options, KeptParts& kept,
                          size_t texture_bytes = TextureStore::kDefaultMemory);

@@ -160,5 +160,64 @@ TEST_F(KeptPartsTest, LeaveMeshesAloneThatEmitOrHaveHoles) {
   EXPECT_EQ(picture, built(text));
 }
 
+/// A glTF model of one sheet, with its numbers in a file beside it.
+void write_model(const std::string& folder, double height) {
+  std::vector<float> points;
+  std::vector<uint16_t> indices;
+  for (int j = 0; j <= kSide; ++j) {
+    for (int i = 0; i <= kSide; ++i) {
+      const double x = 2.0 * i / kSide - 1, y = 2.0 * j / kSide - 1;
+      for (const double v : {x, y, height * std::sin(5 * x)}) points.push_back(static_cast<float>(v));
+    }
+  }
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      const int a = j * (kSide + 1) + i, b = a + kSide + 1;
+      for (const int k : {a, a + 1, b + 1, a, b + 1, b}) indices.push_back(static_cast<uint16_t>(k));
+    }
+  }
+  const size_t point_bytes = points.size() * sizeof(float), index_bytes = indices.size() * sizeof(uint16_t);
+  std::ofstream buffer(folder + "/model.bin", std::ios::binary);
+  buffer.write(reinterpret_cast<const char*>(points.data()), static_cast<std::streamsize>(point_bytes));
+  buffer.write(reinterpret_cast<const char*>(indices.data()), static_cast<std::streamsize>(index_bytes));
+  std::ofstream(folder + "/model.gltf") << fmt::format(
+      R"({{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"scene":0,"nodes":[{{"mesh":0}}],
+"meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+"buffers":[{{"uri":"model.bin","byteLength":{}}}],
+"bufferViews":[{{"buffer":0,"byteLength":{}}},{{"buffer":0,"byteOffset":{},"byteLength":{}}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"type":"VEC3","count":{},"min":[-1,-1,-{}],"max":[1,1,{}]}},
+{{"bufferView":1,"componentType":5123,"type":"SCALAR","count":{}}}]}})",
+      point_bytes + index_bytes, point_bytes, point_bytes, index_bytes, points.size() / 3, height, height,
+      indices.size());
+}
+
+TEST_F(KeptPartsTest, ReadModelsOnceUntilTheyChange) {
+  write_model(folder, 0.25);
+  const std::string path = folder + "/scene.pbrt";
+  const auto write = [&](const std::string& eye) {
+    std::ofstream(path) << "LookAt " << eye
+                        << "  0 0 0  0 1 0 Camera \"perspective\" Film \"image\" \"integer xresolution\" 16 \"integer "
+                           "yresolution\" 16 WorldBegin LightSource \"point\" \"point from\" [0 0 5]\n"
+                           "Shape \"gltf\" \"string filename\" \"model.gltf\" WorldEnd";
+  };
+  const auto again = [&] {
+    const ParsedFile file = reread_scene_file(path, {}, kept);
+    EXPECT_FALSE(file.said.has_errors());
+    return render_world(rebuild_world(plan(file), {}, kept)).result.picture.rgb;
+  };
+  write("0 -1 4");
+  again();
+  EXPECT_EQ(tally(), std::pair(0, 1));
+  write("0 -1 3");
+  const std::vector<float> picture = again();
+  EXPECT_EQ(tally(), std::pair(1, 0));
+  const ParsedFile file = read_scene_file(path);
+  EXPECT_LT(difference(picture, render_world(build_world(plan(file))).result.picture.rgb), 1e-3);
+  // Its numbers are in another file than the model's own.
+  write_model(folder, 0.5);
+  again();
+  EXPECT_EQ(tally(), std::pair(0, 1));
+}
+
 }  // namespace
 }  // namespace whit
