@@ -93,7 +93,8 @@ TEST(Target, EndsInTimeAndTellsHowLongAPictureTakesToWrite) {
   EXPECT_EQ(o.end, TargetEnd::Time);
   EXPECT_EQ(written, 1);
   EXPECT_GT(o.rendered.result.samples_per_pixel, 4);
-  EXPECT_LT(seconds, 1.5);  // a fifth of a second of it and a bit is left for writing
+  // A fifth of a second of it and a bit is left for writing; twice that for a machine that does other things.
+  EXPECT_LT(seconds, 3);
 }
 
 TEST(Target, OfAFilmWithoutPixelsIsNothing) {
