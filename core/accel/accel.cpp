@@ -61,7 +61,9 @@ struct Accel::Impl {
 
   Group& group(int g) { return groups[static_cast<size_t>(g)]; }
   void commit() const {
-    for (size_t g = 1; g < groups.size(); ++g) rtcCommitScene(groups[g].scene);
+    for (size_t g = 1; g < groups.size(); ++g) {
+      if (!groups[g].built) rtcCommitScene(groups[g].scene);
+    }
     rtcCommitScene(groups[kWorld].scene);
     rtcCommitScene(analytic->scene());
   }
