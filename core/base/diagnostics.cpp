@@ -33,6 +33,10 @@ int edit_distance(const std::string& a, const std::string& b) {
   return previous[b.size()];
 }
 
+bool differs_in_case_alone(const std::string& a, const std::string& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
+}
+
 }  // namespace
 
 bool Diagnostics::has_errors() const {
@@ -49,7 +53,7 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
     if (candidate.empty() || candidate.size() > kLongest) continue;
     const int distance = edit_distance(name, candidate);
     const int letters = static_cast<int>(std::max(name.size(), candidate.size()));
-    if (3 * distance > 2 * letters) continue;
+    if (3 * distance > 2 * letters && !differs_in_case_alone(name, candidate)) continue;
     if (best.empty() || distance < best_distance) {
       best = candidate;
       best_distance = distance;

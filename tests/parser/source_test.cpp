@@ -144,6 +144,7 @@ TEST(DidYouMean, FindsSlips) {
   EXPECT_EQ(did_you_mean("raduis", names), "did you mean \"radius\"?");
   EXPECT_EQ(nearest_name("Radius", names), "radius");
   EXPECT_EQ(nearest_name("kd", names), "Kd");
+  EXPECT_EQ(nearest_name("RADIUS", names), "radius");  // More than a third of the letters, but the same ones.
   EXPECT_EQ(nearest_name("Ks", names), "");
   EXPECT_EQ(nearest_name("banana", names), "");
   EXPECT_EQ(nearest_name(std::string(100000, 'x'), names), "");
