@@ -76,7 +76,7 @@ int bench_command(const Arguments& args) {
         {.choices = names, .delimiter = ','}},
        {"--text-mb", &reading.text_megabytes, "Megabytes of scene text to read", {.least = 1, .most = 1e5}},
        {"--runs", &settings.runs, "Counted runs of each measurement", {.least = 1, .most = 100}},
-       {"--write", &write_to, "Write the built-in scenes into this folder instead, as NAME.pbrt"},
+       {"--write", &write_to, "Write the built-in scenes into this folder instead, as NAME.pbrt", {.files = "/"}},
        {"--json", &as_json, "Print the figures as JSON"}}};
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;

@@ -69,9 +69,74 @@ void apply(CLI::App& app, CLI::Option& option, const Flag& flag) {
   option.required(rules.required);
 }
 
+/// Where parse_arguments() puts what it is given instead of reading arguments; null but within describe().
+CommandDescription* wanted_description = nullptr;
+
+std::vector<std::string> split(std::string_view names) {
+  std::vector<std::string> out;
+  for (size_t at = 0; at <= names.size();) {
+    const size_t end = std::min(names.find(',', at), names.size());
+    out.emplace_back(names.substr(at, end - at));
+    at = end + 1;
+  }
+  return out;
+}
+
+/// What a value is called where nothing says it is a file or one of a few words.
+const char* value_name(const FlagTarget& target) {
+  struct {
+    const char* operator()(const bool*) const { return ""; }
+    const char* operator()(const int*) const { return "INT"; }
+    const char* operator()(const uint32_t*) const { return "INT"; }
+    const char* operator()(const double*) const { return "NUMBER"; }
+    const char* operator()(const std::optional<int>*) const { return "INT"; }
+    const char* operator()(const std::optional<double>*) const { return "NUMBER"; }
+    const char* operator()(const std::vector<int>*) const { return "INT"; }
+    const char* operator()(const std::vector<double>*) const { return "NUMBER"; }
+    const char* operator()(const std::string*) const { return "TEXT"; }
+    const char* operator()(const std::optional<std::string>*) const { return "TEXT"; }
+    const char* operator()(const std::vector<std::string>*) const { return "TEXT"; }
+  } name;
+  return std::visit(name, target);
+}
+
+FlagDescription describe(const Flag& flag) {
+  constexpr const char* kScenes = "pbrt gltf glb";
+  const FlagRules& rules = flag.rules;
+  FlagDescription out;
+  out.names = split(flag.names);
+  const bool bare = out.names.front()[0] != '-';
+  out.value = value_name(flag.target);
+  if (rules.files) out.files = rules.files;
+  else if (bare && rules.choices.empty() && !rules.offers) out.files = kScenes;
+  if (out.files) out.value = *out.files == "/" ? "FOLDER" : "FILE";
+  if (bare) out.value = out.names.front(), out.names.clear();
+  out.help = flag.help;
+  out.words = rules.offers ? rules.offers() : rules.choices;
+  out.count = std::max(1, rules.count);
+  out.list = rules.delimiter != 0 || rules.commas;
+  out.repeats = rules.repeats || (bare && std::holds_alternative<std::vector<std::string>*>(flag.target));
+  return out;
+}
+
 }  // namespace
 
+CommandDescription describe(const Command& command) {
+  CommandDescription out;
+  out.name = command.name;
+  wanted_description = &out;
+  command.run({});
+  wanted_description = nullptr;
+  return out;
+}
+
 bool parse_arguments(const CommandLine& command, const Arguments& args, int& code) {
+  if (wanted_description) {
+    wanted_description->about = command.about;
+    for (const Flag& flag : command.flags) wanted_description->flags.push_back(describe(flag));
+    code = kDone;
+    return false;
+  }
   CLI::App app(command.about, command.program);
   for (const Flag& flag : command.flags) apply(app, *add(app, flag), flag);
   try {

@@ -133,17 +133,18 @@ int run(const CostFlags& flags, const CostRequest& begun) {
 int cost_command(const Arguments& args) {
   const CostRequest begun;  // Its clock runs from here.
   CostFlags flags;
-  CommandLine command{"whit cost",
-                      "Measures what accuracy costs in time for a scene, and what its settings bring.",
-                      {{"scene", &flags.scene, "Scene file; - is standard input", {.required = true}},
-                       {"--time", &flags.time, "Time for all of it: 60s, 2min, 1500ms"},
-                       {"--html", &flags.html, "Write the report as one page; - is standard output, for all three"},
-                       {"--json", &flags.json, "Write it for programs"},
-                       {"--csv", &flags.csv, "Write the settings as a table"},
-                       {"--quick", &flags.quick, "Samples alone: no other settings, no effects"},
-                       {"--all-samplers", &flags.all_samplers, "Every sampler, not only the scene's, sobol and random"},
-                       {"--seed", &flags.seed, "Seed of the first of the pictures that are compared"},
-                       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}}}};
+  CommandLine command{
+      "whit cost",
+      "Measures what accuracy costs in time for a scene, and what its settings bring.",
+      {{"scene", &flags.scene, "Scene file; - is standard input", {.required = true}},
+       {"--time", &flags.time, "Time for all of it: 60s, 2min, 1500ms"},
+       {"--html", &flags.html, "Write the report as one page; - is standard output, for all three", {.files = "html"}},
+       {"--json", &flags.json, "Write it for programs", {.files = "json"}},
+       {"--csv", &flags.csv, "Write the settings as a table", {.files = "csv"}},
+       {"--quick", &flags.quick, "Samples alone: no other settings, no effects"},
+       {"--all-samplers", &flags.all_samplers, "Every sampler, not only the scene's, sobol and random"},
+       {"--seed", &flags.seed, "Seed of the first of the pictures that are compared"},
+       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}}}};
   add_model_flags(command, flags.model, false);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;

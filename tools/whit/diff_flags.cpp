@@ -41,6 +41,13 @@ std::string slow_names() {
   return names;
 }
 
+std::vector<std::string> offered_measures() {
+  std::vector<std::string> names{"all"};
+  for (const MeasureRow& row : all_measures())
+    if (row.slow) names.emplace_back(row.name);
+  return names;
+}
+
 // What flags are read into before it is known to be right.
 struct Raw {
   std::vector<std::string> above, below, slow;
@@ -186,8 +193,8 @@ bool read_diff_flags(const Arguments& args, DiffFlags& flags, int& code) {
   const CommandLine command{
       "whit diff",
       description.c_str(),
-      {{"a", &flags.a, "The picture that is judged, or a folder", {.required = true}},
-       {"b", &flags.b, "The reference, or a folder", {.required = true}},
+      {{"a", &flags.a, "The picture that is judged, or a folder", {.required = true, .files = ""}},
+       {"b", &flags.b, "The reference, or a folder", {.required = true, .files = ""}},
        {"--channels", &raw.channels, "Only channels of these patterns: 'R,G,B,Albedo.*', '!variance.*' all but these"},
        {"--colorspace", &raw.colour_space,
         "Of files with whole numbers: sRGB, Rec709, linear, gamma=2.2, or one of $OCIO's. By default the file's own"},
@@ -204,17 +211,17 @@ bool read_diff_flags(const Arguments& args, DiffFlags& flags, int& code) {
         &raw.alpha,
         "Of pairs that differ by noise alone --noise calls so many different; by default 0.001",
         {.least = kLeastAlpha, .most = kMostAlpha}},
-       {"--measure", &raw.slow, slow.c_str(), repeats},
+       {"--measure", &raw.slow, slow.c_str(), {.repeats = true, .offers = offered_measures}},
        {"--relmse", &raw.relmse, "Limit of relmse and relmse_robust"},
        {"--ratio", &raw.ratio, "The same as --fail-above ratio="},
        {"--block", &raw.block, "Limit of block; of channel_block twice that"},
-       {"--policy", &flags.policy, "JSON file with limits for paths (docs/diff-in-ci.md)"},
-       {"--heatmap", &flags.heatmap, "Write a PNG of |a - b|"},
+       {"--policy", &flags.policy, "JSON file with limits for paths (docs/diff-in-ci.md)", {.files = "json"}},
+       {"--heatmap", &flags.heatmap, "Write a PNG of |a - b|", {.files = "png"}},
        {"--signed", &flags.heat_signed, "The heat map is of a - b"},
        {"--heat-scale", &raw.heat_scale,
         "What the map's end stands for; by default what 99.9 % of the pixels are within"},
-       {"--html", &flags.html, "Write a page to look at the pictures with"},
-       {"--junit", &flags.junit, "Write a file for CI systems"},
+       {"--html", &flags.html, "Write a page to look at the pictures with", {.files = "html"}},
+       {"--junit", &flags.junit, "Write a file for CI systems", {.files = "xml"}},
        {"--update", &flags.update, "Copy A over the references that failed, when asked"},
        {"--yes", &flags.yes, "Do not ask"},
        {"--verbose,-v", &flags.verbose, "A table of all measures"},

@@ -15,12 +15,13 @@ int import_command(const Arguments& args) {
   ImportRequest request;
   ModelFlags flags;
   bool quiet = false;
-  CommandLine command{"whit import",
-                      "Writes a glTF model as a .pbrt scene, with its meshes (PLY) and pictures in a folder beside it.",
-                      {{"model", &request.model, "The model: .gltf or .glb", {.required = true}},
-                       {"--outfile,-o", &request.scene, "The scene file (default: the model's name with .pbrt)"},
-                       {"--force", &request.overwrite, "Replace files that are there already"},
-                       {"--quiet", &quiet, "Problems only"}}};
+  CommandLine command{
+      "whit import",
+      "Writes a glTF model as a .pbrt scene, with its meshes (PLY) and pictures in a folder beside it.",
+      {{"model", &request.model, "The model: .gltf or .glb", {.required = true, .files = "gltf glb"}},
+       {"--outfile,-o", &request.scene, "The scene file (default: the model's name with .pbrt)", {.files = "pbrt"}},
+       {"--force", &request.overwrite, "Replace files that are there already"},
+       {"--quiet", &quiet, "Problems only"}}};
   add_model_flags(command, flags);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;

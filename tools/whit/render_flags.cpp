@@ -6,6 +6,7 @@
 #include <charconv>
 #include <filesystem>
 
+#include "core/render/aovs.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
@@ -68,17 +69,31 @@ std::string picture_command(const Arguments& args) {
   return command;
 }
 
+std::vector<std::string> aov_names() {
+  std::vector<std::string> names{"none"};
+  for (const AovRow& row : all_aovs()) names.emplace_back(row.name);
+  return names;
+}
+
+constexpr const char* kPictures = "exr pfm png jpg tga tiff";
+
 // The effects' flags stand between these two tables.
 
 std::vector<Flag> flags_of(RenderSettings& s) {
   return {
       {"scenes", &s.scenes, "Scene files or glTF models; standard input without any"},
-      {"--outfile,-o", &s.output.outfile, "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)"},
-      {"--display", &s.output.display, "Display picture beside a linear one; 'none' for none (default: .png)"},
+      {"--outfile,-o",
+       &s.output.outfile,
+       "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)",
+       {.files = kPictures}},
+      {"--display",
+       &s.output.display,
+       "Display picture beside a linear one; 'none' for none (default: .png)",
+       {.files = kPictures}},
       {"--aov",
        &s.output.aovs,
        "What an .exr holds beside its colours: names of whit help aovs, or none",
-       {.delimiter = ','}},
+       {.delimiter = ',', .offers = aov_names}},
       {"--nthreads", &s.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
       {"--cropwindow", &s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]", {.count = 4}},
       {"--spp", &s.spp, "Samples per pixel, instead of the scene's", {.least = 1, .most = 1 << 30}},
@@ -93,7 +108,10 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        &s.target.max_samples,
        "Samples per pixel at most, of --target-error and --time-limit",
        {.least = 1, .most = 1 << 30}},
-      {"--json", &s.target.json, "What --target-error or --time-limit came to, as JSON: a file, or - for stdout"},
+      {"--json",
+       &s.target.json,
+       "What --target-error or --time-limit came to, as JSON: a file, or - for stdout",
+       {.files = "json"}},
       {"--seed", &s.seed, "Seed of the random numbers"},
       {"--pixel", &s.pixel, "Render one pixel: x,y", {.count = 2}},
       {"--debug-pixel", &s.debug_pixel, "Say how a pixel comes about, without a picture: x,y or x,y,sample"},
@@ -104,7 +122,7 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
   return {
       {"--plan-check", &s.effects.plan_check, "Run every stage, called for or not, for the same picture: a test"},
       {"--view", &s.output.view, "Display view: sRGB, 'ACES SDR', exposure=E, or one of the config's"},
-      {"--ocio", &s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one"},
+      {"--ocio", &s.output.ocio, "OpenColorIO config, instead of $OCIO and the built-in one", {.files = "ocio ocioz"}},
       {"--exposure", &s.output.exposure, "Stops by which the display picture is brightened"},
       {"--type", &s.half_or_float, "Numbers of an .exr: half or float", {.choices = {"half", "float"}}},
       {"--traversal", &s.traversal, "robust (watertight) or fast", {.choices = {"robust", "fast"}}},
@@ -120,7 +138,7 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
       {"--cat", &s.cat, "Print the scene in normal form instead of rendering"},
       {"--toply", &s.toply, "The same, with large meshes written to PLY files"},
       {"--display-server", &s.display_server, "Show the picture while it is made: host:port of a tev viewer"},
-      {"--logdir", &s.log_dir, "Folder for a log file of the messages"},
+      {"--logdir", &s.log_dir, "Folder for a log file of the messages", {.files = "/"}},
       {"--minloglevel", &s.min_log_level, "2 and above: errors only"},
       {"--v", &s.verbosity, "Verbosity: 1 and above says each step"},
       {"--verbose", &s.verbose, "The same as --v 1"},
