@@ -30,8 +30,7 @@ constexpr TypeName kTypes[] = {
 };
 
 Remedy type_remedy(const std::string& name) {
-  std::vector<std::string> names;
-  for (const TypeName& type : kTypes) names.emplace_back(type.name);
+  const std::vector<std::string> names = param_type_names();
   if (Remedy remedy = suggestion(name, names); remedy.slip.known()) return remedy;
   std::string list = "the types are";
   for (const std::string& type : names) list += (type == names.front() ? " " : ", ") + type;
@@ -371,6 +370,12 @@ std::optional<ParamType> find_param_type(std::string_view name) {
   for (const TypeName& type : kTypes)
     if (type.name == name) return type.type;
   return std::nullopt;
+}
+
+std::vector<std::string> param_type_names() {
+  std::vector<std::string> names;
+  for (const TypeName& type : kTypes) names.emplace_back(type.name);
+  return names;
 }
 
 bool read_parameters(Lexer& lexer, ParameterList& out) {

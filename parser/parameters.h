@@ -2,7 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/parameter.h"
 #include "parser/lexer.h"
@@ -11,6 +13,9 @@ namespace whit {
 
 /// The type a scene file calls `name`, aliases included ("color" is Rgb, "point" is Point3).
 std::optional<ParamType> find_param_type(std::string_view name);
+
+/// All names of types that a scene file may use, aliases included.
+std::vector<std::string> param_type_names();
 
 /// Reads parameters up to the first token that does not belong to the list. Texture names are kept unresolved.
 /// A parameter with a mistake is reported and left out. False when the rest of the statement makes no sense

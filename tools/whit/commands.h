@@ -19,7 +19,7 @@ int cost_command(const Arguments& args);     ///< whit cost SCENE
 int import_command(const Arguments& args);   ///< whit import MODEL -o SCENE
 int diff_command(const Arguments& args);     ///< whit diff A B
 int bench_command(const Arguments& args);    ///< whit bench [SCENES...]
-int help_command(const Arguments& args);     ///< whit help [CATEGORY [PLUGIN] | --json]
+int help_command(const Arguments& args);     ///< whit help [[KIND] NAME | --json]
 
 /// A command's name, its function and one line of what it does: the table behind dispatch and help.
 struct Command {

@@ -1,198 +1,149 @@
-// `whit help`: commands, plugins and statements, from the same tables that run and parse them.
+// `whit help`: commands, plugins, statements, effects and AOVs, from the same tables that run and parse them.
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <cstdio>
+#include <functional>
 #include <set>
 
-#include "core/plugin/registry.h"
-#include "core/render/aovs.h"
-#include "parser/statements.h"
-#include "tools/whit/commands.h"
-#include "tools/whit/json.h"
+#include "core/base/diagnostics.h"
+#include "core/base/plain_text.h"
+#include "tools/whit/command_line.h"
+#include "tools/whit/completion.h"
+#include "tools/whit/help_json.h"
+#include "tools/whit/help_text.h"
+#include "tools/whit/help_topics.h"
+#include "tools/whit/manual_page.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
 namespace {
 
-// ---- For people ----
+using Names = std::vector<std::string>;
+using SameName = std::function<bool(const std::string&, const std::string&)>;
 
-void print_overview() {
-  fmt::print(
-      "whit renders pbrt-v3 scene files and glTF models with an Embree-accelerated Whitted integrator.\n\ncommands\n");
-  for (const Command& c : commands()) fmt::print("  whit {:<32} {}\n", c.synopsis, c.summary);
-  fmt::print("  (each has --help)\n\nplugins (whit help CATEGORY NAME shows parameters)\n");
-  std::set<std::string> categories;
-  for (const PluginInfo* p : list_plugins()) categories.insert(p->category);
-  for (const std::string& category : categories) {
-    std::string names;
-    for (const std::string& name : plugin_names(category)) names += (names.empty() ? "" : " ") + name;
-    fmt::print("  {:<18} {}\n", category, names);
+bool is_in(const Names& names, const std::string& name, const SameName& same) {
+  return std::any_of(names.begin(), names.end(), [&](const std::string& n) { return same(n, name); });
+}
+
+/// What may stand before the name of something in a group.
+bool is_kind(const TopicGroup& group, const std::string& words, const SameName& same) {
+  return same(group.name, words) || is_in(group.others, words, same) || is_in(group.before, words, same);
+}
+
+/// What was asked for: the words before the last as the kind of thing, "" for any, and the last.
+struct Question {
+  std::string kind, name;
+  std::string all() const { return kind.empty() ? name : fmt::format("{} {}", kind, name); }
+};
+
+Question question_of(const Arguments& args) {
+  const std::string words = fmt::format("{}", fmt::join(args, " "));
+  const size_t last = words.rfind(' ');
+  if (last == std::string::npos) return {"", words};
+  return {words.substr(0, last), words.substr(last + 1)};
+}
+
+/// Prints one thing after another, those of a group that wants it with an empty line between.
+class Printer {
+ public:
+  void print(const TopicGroup& group, const Topic& topic) {
+    if (last_ && (group.spaced || last_ != &group)) fmt::print("\n");
+    last_ = &group;
+    std::fflush(stdout);
+    topic.print();
   }
-  fmt::print(
-      "\nwhit help statement shows the statements of a scene file, whit help effects what --without knows, whit help "
-      "aovs "
-      "what --aov does; "
-      "--json prints all this for machines\n");
-}
+  bool printed() const { return last_ != nullptr; }
 
-/// True for the types that go wherever "rgb" does.
-bool is_other_colour(ParamType t) {
-  return t == ParamType::Xyz || t == ParamType::Blackbody || t == ParamType::Spectrum;
-}
+ private:
+  const TopicGroup* last_ = nullptr;
+};
 
-/// The range, or "" where every float is allowed.
-std::string limits_text(const Range& r) {
-  constexpr double most = std::numeric_limits<float>::max();
-  return r.min <= -most && r.max >= most ? std::string() : range_text(r);
-}
-
-void print_param(const ParamSpec& p) {
-  std::string declared, facts;
-  for (const ParamType type : p.accepts) {
-    if (is_other_colour(type)) continue;
-    declared += fmt::format("{}\"{} {}\"", declared.empty() ? "" : " or ", param_type_name(type), p.name);
+/// Prints everything that the question names.
+bool answer(const std::vector<TopicGroup>& groups, const Question& asked, const SameName& same) {
+  Printer printer;
+  for (const TopicGroup& group : groups) {
+    const bool whole = same(group.name, asked.all()) || is_in(group.others, asked.all(), same);
+    const bool kind = asked.kind.empty() || is_kind(group, asked.kind, same);
+    for (const Topic& topic : group.topics) {
+      if (whole || (kind && (same(topic.name, asked.name) || is_in(topic.aliases, asked.name, same))))
+        printer.print(group, topic);
+    }
   }
-  const auto fact = [&](const std::string& f) {
-    if (!f.empty()) facts += (facts.empty() ? "" : ", ") + f;
-  };
-  if (!p.default_text.empty()) fact("default " + p.default_text);
-  fact(unit_name(p.unit));
-  fact(limits_text(p.range));
-  if (!p.choices.empty()) fact(fmt::format("one of {}", fmt::join(p.choices, " ")));
-  fmt::print("  {}{}\n      {}\n", declared, facts.empty() ? "" : "  (" + facts + ")", p.doc);
+  return printer.printed();
 }
 
-void print_plugin(const PluginInfo& p) {
-  std::string aliases;
-  for (const std::string& a : p.aliases) aliases += fmt::format(", also \"{}\"", a);
-  fmt::print("{} \"{}\"{}: {}\n", p.category, p.name, aliases, p.doc);
-  bool colours = false;
-  for (const ParamSpec& spec : p.params) {
-    print_param(spec);
-    colours |= std::any_of(spec.accepts.begin(), spec.accepts.end(), is_other_colour);
+bool same_letters(const std::string& a, const std::string& b) { return lower_case(a) == lower_case(b); }
+
+/// What there is no answer to, and what was probably meant.
+std::string no_answer(const std::vector<TopicGroup>& groups, const Question& asked) {
+  Names kinds, of_kind, anything;
+  std::set<std::string> elsewhere;
+  for (const TopicGroup& group : groups) {
+    kinds.push_back(group.name);
+    kinds.insert(kinds.end(), group.others.begin(), group.others.end());
+    const bool kind = is_kind(group, asked.kind, same_letters);
+    for (const Topic& topic : group.topics) {
+      anything.push_back(topic.name);
+      if (kind) of_kind.push_back(topic.name);
+      if (same_letters(topic.name, asked.name)) elsewhere.insert(fmt::format("{} \"{}\"", group.name, topic.name));
+    }
   }
-  if (colours) fmt::print("  (\"rgb\" may also be \"xyz\", \"blackbody\" or \"spectrum\")\n");
+  anything.insert(anything.end(), kinds.begin(), kinds.end());
+  const auto remedy = [](const std::string& hint) { return hint.empty() ? "`whit help` lists what there is" : hint; };
+  if (asked.kind.empty())
+    return fmt::format("there is nothing called \"{}\"; {}", asked.name, remedy(did_you_mean(asked.name, anything)));
+  if (of_kind.empty())
+    return fmt::format("there is no kind of things called \"{}\"; {}", asked.kind,
+                       remedy(did_you_mean(asked.kind, kinds)));
+  if (!elsewhere.empty())
+    return fmt::format("there is no {} \"{}\", but {}", asked.kind, asked.name, fmt::join(elsewhere, " and "));
+  return fmt::format("there is no {} \"{}\"; {}", asked.kind, asked.name, remedy(did_you_mean(asked.name, of_kind)));
 }
 
-void print_statements() {
-  for (const StatementRow& s : statements()) {
-    const char* const space = s.arguments.usage.empty() ? "" : " ";
-    fmt::print("{}{}{}\n    {}\n", s.name, space, s.arguments.usage, s.doc);
+int explain(const Arguments& words) {
+  if (words.empty() || words == Arguments{"help"}) {
+    print_overview();
+    return kDone;
   }
+  const std::vector<TopicGroup> groups = topic_groups();
+  const Question asked = question_of(words);
+  if (answer(groups, asked, std::equal_to<std::string>()) || answer(groups, asked, same_letters)) return kDone;
+  say("whit help: " + no_answer(groups, asked));
+  return kUsage;
 }
 
-void print_effects() {
-  for_effects(EffectSet::all(), [](Effect e) {
-    const EffectInfo& info = effect_info(e);
-    fmt::print("{:<18} {}; without: {}\n", info.name, info.doc, info.off);
-  });
-}
-
-/// Channels of an AOV, those of a layer together: "N.X .Y .Z".
-std::string channels_text(const AovRow& row) {
-  std::string text = row.by_light_group ? "lightgroup.NAME" : "";
-  for (const std::string& channel : row.channels) {
-    const size_t dot = text.empty() ? 0 : channel.find('.');
-    text += fmt::format("{}{}", text.empty() ? "" : " ", channel.substr(dot == std::string::npos ? 0 : dot));
+/// For completion: the names of everything that is one word.
+std::vector<std::string> topic_names() {
+  std::set<std::string> names;
+  for (const TopicGroup& group : topic_groups()) {
+    names.insert(group.name.substr(group.name.rfind(' ') + 1));
+    for (const Topic& topic : group.topics) names.insert(topic.name);
   }
-  return text;
+  return {names.begin(), names.end()};
 }
-
-void print_aovs() {
-  for (const AovRow& row : all_aovs()) fmt::print("{:<12} {}\n    {}\n", row.name, channels_text(row), row.doc);
-}
-
-// ---- For machines ----
-
-Json describe(const ParamSpec& p) {
-  Json::Array types;
-  for (const ParamType type : p.accepts) types.push_back(param_type_name(type));
-  Json::Object j{{"name", p.name}, {"types", types}};
-  if (!p.default_text.empty()) j.emplace_back("default", p.default_text);
-  if (p.unit != Unit::None) j.emplace_back("unit", unit_name(p.unit));
-  if (const std::string limits = limits_text(p.range); !limits.empty()) {
-    j.emplace_back("range", limits);
-    if (std::isfinite(p.range.min)) j.emplace_back("minimum", p.range.min);
-    if (std::isfinite(p.range.max)) j.emplace_back("maximum", p.range.max);
-  }
-  if (!p.choices.empty()) j.emplace_back("choices", p.choices);
-  j.emplace_back("doc", p.doc);
-  return j;
-}
-
-Json describe(const PluginInfo& p) {
-  Json::Array parameters;
-  for (const ParamSpec& spec : p.params) parameters.push_back(describe(spec));
-  return Json::Object{
-      {"category", p.category}, {"name", p.name}, {"aliases", p.aliases}, {"doc", p.doc}, {"parameters", parameters}};
-}
-
-Json describe(const StatementRow& s) {
-  constexpr const char* kBlocks[] = {"options", "world", "both"};
-  return Json::Object{{"name", s.name},
-                      {"arguments", s.arguments.usage},
-                      {"block", kBlocks[static_cast<int>(s.block)]},
-                      {"doc", s.doc}};
-}
-
-void print_json() {
-  Json::Array plugins, rows, effects, aovs;
-  for (const PluginInfo* p : list_plugins()) plugins.push_back(describe(*p));
-  for (const StatementRow& s : statements()) rows.push_back(describe(s));
-  for_effects(EffectSet::all(), [&](Effect e) {
-    const EffectInfo& info = effect_info(e);
-    effects.push_back(Json::Object{{"name", info.name}, {"doc", info.doc}, {"without", info.off}});
-  });
-  for (const AovRow& row : all_aovs()) {
-    aovs.push_back(Json::Object{
-        {"name", row.name}, {"channels", channels_text(row)}, {"pixel", pixel_text(row.pixel)}, {"doc", row.doc}});
-  }
-  fmt::print("{}\n",
-             to_text(Json::Object{{"plugins", plugins}, {"statements", rows}, {"effects", effects}, {"aovs", aovs}}));
-}
-
-std::string remedy(const std::string& text) { return text.empty() ? "" : "; " + text; }
 
 }  // namespace
 
 int help_command(const Arguments& args) {
-  if (args.empty() || args[0] == "--help" || args[0] == "-h") {
-    print_overview();
+  Arguments words;
+  bool as_json = false, as_manual = false;
+  std::string shell;
+  const CommandLine command{
+      "whit help",
+      "Explains a command, plugin, statement, effect or AOV by its name, or lists what there is.",
+      {{"name", &words, "What to explain, alone or behind its kind: shape sphere", {.offers = topic_names}},
+       {"--json", &as_json, "Print all that can stand in a scene file as JSON", {}},
+       {"--completion", &shell, "Print a script with which a shell completes commands", {.choices = shells()}},
+       {"--man", &as_manual, "Print the manual page, for man", {.excludes = "--completion"}}}};
+  int code = kDone;
+  if (!parse_arguments(command, args, code)) return code;
+  if (as_json || as_manual || !shell.empty()) {
+    fmt::print("{}", as_json ? help_json() + "\n" : as_manual ? manual_page() : completion_script(shell));
     return kDone;
   }
-  const std::pair<const char*, void (*)()> topics[] = {
-      {"--json", print_json}, {"statement", print_statements}, {"effects", print_effects}, {"aovs", print_aovs}};
-  for (const auto& [topic, print] : topics) {
-    if (args[0] != topic) continue;
-    print();
-    return kDone;
-  }
-  // A category may be two words: "float texture".
-  std::string category = args[0];
-  size_t used = 1;
-  if (list_plugins(category).empty() && args.size() > 1) category += " " + args[1], used = 2;
-  const auto plugins = list_plugins(category);
-  if (plugins.empty()) {
-    std::vector<std::string> known{"statement", "effects", "aovs"};
-    for (const PluginInfo* p : list_plugins()) known.push_back(p->category);
-    say(fmt::format("whit help: no category \"{}\"{}", args[0], remedy(did_you_mean(args[0], known))));
-    return kUsage;
-  }
-  if (args.size() == used) {
-    for (const PluginInfo* p : plugins) print_plugin(*p);
-    return kDone;
-  }
-  const PluginInfo* p = find_plugin(category, args[used]);
-  if (!p) {
-    say(fmt::format("whit help: no {} \"{}\"{}", category, args[used],
-                    remedy(did_you_mean(args[used], plugin_names(category)))));
-    return kUsage;
-  }
-  print_plugin(*p);
-  return kDone;
+  return explain(words);
 }
 
 }  // namespace whit

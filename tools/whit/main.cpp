@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <new>
+#include <system_error>
 
 #include "core/base/diagnostics.h"
 #include "tools/whit/commands.h"
@@ -24,37 +25,54 @@ const std::vector<Command>& commands() {
       {"import", import_command, "import MODEL [-o SCENE.pbrt]", "write a glTF model as a scene to edit"},
       {"diff", diff_command, "diff A B [--noise] [--html F]", "say whether two pictures or folders of them differ"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
-      {"help", help_command, "help [CATEGORY [PLUGIN] | --json]", "list plugins and their parameters"},
+      {"help", help_command, "help [[KIND] NAME | --json]", "explain a command, plugin, statement, effect or AOV"},
   };
   return table;
 }
 
 namespace {
 
-/// The command that a first word which is no file was probably meant to be, or "".
-std::string misspelt_command(const Arguments& args) {
-  if (args.empty() || args[0].empty() || args[0][0] == '-' || std::filesystem::exists(args[0])) return {};
-  std::vector<std::string> names;
+/// The name of a command that is there, or was probably meant; "" when nothing is near.
+std::string nearest_command(const std::string& word) {
+  std::vector<std::string> names{"version"};
   for (const Command& c : commands()) names.push_back(c.name);
-  return nearest_name(args[0], names);
+  return nearest_name(word, names);
+}
+
+/// A first word that is neither a command nor a file can have been meant as either: says so, and returns the exit code;
+/// kDone where it can only be a file, by its path or its ending.
+int misspelt_command(const std::string& word) {
+  std::error_code ignored;
+  if (word.empty() || word[0] == '-' || word.find('/') != std::string::npos) return kDone;
+  if (std::filesystem::exists(word, ignored)) return kDone;
+  const std::string meant = nearest_command(word);
+  if (!meant.empty()) {
+    say(fmt::format("whit: there is no command \"{}\", and no file of that name to render; did you mean `whit {}`?",
+                    word, meant));
+    return kUsage;
+  }
+  if (word.find('.') != std::string::npos) return kDone;
+  say(fmt::format(
+      "whit: cannot open \"{}\": no such file, and there is no command of that name (`whit help` lists them)", word));
+  return kFileError;
+}
+
+int print_version() {
+  fmt::print("whit {}\n", version());
+  return kDone;
 }
 
 int dispatch(const Arguments& args) {
-  if (!args.empty()) {
-    for (const Command& c : commands()) {
-      if (args[0] == c.name) return c.run({args.begin() + 1, args.end()});
-    }
-    if (args[0] == "--help" || args[0] == "-h") return help_command({});
-    if (args[0] == "--version") {
-      fmt::print("whit {}\n", version());
-      return kDone;
-    }
+  if (args.empty()) return render_command(args);
+  for (const Command& c : commands()) {
+    if (args[0] == c.name) return c.run({args.begin() + 1, args.end()});
   }
-  if (std::string meant = misspelt_command(args); !meant.empty()) {
-    say(fmt::format("whit: there is no command and no file \"{}\"; did you mean `whit {}`?", args[0], meant));
-    return kUsage;
-  }
-  return render_command(args);
+  if (args[0] == "--help" || args[0] == "-h") return help_command({});
+  std::error_code ignored;
+  if (args[0] == "--version" || args[0] == "-V") return print_version();
+  if (args[0] == "version" && !std::filesystem::exists(args[0], ignored)) return print_version();
+  const int code = misspelt_command(args[0]);
+  return code == kDone ? render_command(args) : code;
 }
 
 }  // namespace
