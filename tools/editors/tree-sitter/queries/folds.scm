@@ -1,0 +1,3 @@
+; Made by tools/make-editors; do not edit.
+(block) @fold
+(list) @fold

@@ -1,0 +1,1 @@
+au BufNewFile,BufRead *.pbrt setfiletype pbrt
