@@ -10,6 +10,7 @@ import unittest
 
 ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 WHIT = os.environ.get("WHIT", os.path.join(ROOT, "build", "release", "whit"))
+EXTENSION = os.path.join(ROOT, "tools", "editors", "vscode")
 SCOPES = os.path.join(ROOT, "tests", "editors", "scopes.pbrt")
 
 
@@ -112,6 +113,39 @@ class Grammars(unittest.TestCase):
                         self.assertIn("support.class.plugin.pbrt", self.grammar.scopes(line)[-2], line)
         for kind in known["types"]:
             self.assertIn("storage.type.parameter.pbrt", self.grammar.scopes('"%s x"' % kind["name"])[1], kind)
+
+
+class Extension(unittest.TestCase):
+    """What can be said of the extension for VS Code without node."""
+
+    def package(self):
+        with open(EXTENSION + "/package.json", encoding="utf-8") as f:
+            return json.load(f)
+
+    def test_its_files_are_there(self):
+        contributes = self.package()["contributes"]
+        for path in [contributes["languages"][0]["configuration"], contributes["grammars"][0]["path"], "README.md",
+                     "LICENSE", "package-lock.json"]:
+            self.assertTrue(os.path.exists(os.path.join(EXTENSION, path)), path)
+        with open(EXTENSION + "/language-configuration.json", encoding="utf-8") as f:
+            self.assertEqual(json.load(f)["comments"]["lineComment"], "#")
+
+    def test_the_problem_matcher_reads_what_check_prints(self):
+        pattern = self.package()["contributes"]["problemMatchers"][0]["pattern"]
+        match = re.match(pattern["regexp"], 'scenes/a:b.pbrt:8:13: warning: sphere has no parameter "raduis"')
+        self.assertEqual([match.group(pattern[k]) for k in ("file", "line", "column", "severity", "message")],
+                         ["scenes/a:b.pbrt", "8", "13", "warning", 'sphere has no parameter "raduis"'])
+
+    def test_blocks_are_those_of_the_language(self):
+        # Where files that are not made by tools/make-editors name them.
+        known = json.loads(subprocess.run([WHIT, "help", "--json"], check=True, capture_output=True, text=True).stdout)
+        blocks = {s["name"][:-len("Begin")] for s in known["statements"] if s["name"].endswith("Begin")}
+        for path in (EXTENSION + "/language-configuration.json", ROOT + "/tools/editors/vim/ftplugin/pbrt.vim"):
+            with open(path, encoding="utf-8") as f:
+                named = re.findall(r"\((?:\?:)?((?:\w+\\?\|)+\w+)\\?\)\\*(?:Begin|End)", f.read())
+            self.assertTrue(named, path)
+            for names in named:
+                self.assertEqual(set(re.split(r"\\?\|", names)), blocks, path)
 
 
 if __name__ == "__main__":

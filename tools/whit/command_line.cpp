@@ -110,9 +110,10 @@ FlagDescription describe(const Flag& flag) {
   if (rules.files) out.files = rules.files;
   else if (bare && rules.choices.empty() && !rules.offers) out.files = kScenes;
   if (out.files) out.value = *out.files == "/" ? "FOLDER" : "FILE";
+  out.words = rules.offers ? rules.offers() : rules.choices;
+  if (!out.words.empty()) out.value = "NAME";
   if (bare) out.value = out.names.front(), out.names.clear();
   out.help = flag.help;
-  out.words = rules.offers ? rules.offers() : rules.choices;
   out.count = std::max(1, rules.count);
   out.list = rules.delimiter != 0 || rules.commas;
   out.repeats = rules.repeats || (bare && std::holds_alternative<std::vector<std::string>*>(flag.target));
