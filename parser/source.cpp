@@ -211,7 +211,7 @@ std::optional<uint32_t> Sources::open(const std::string& path, std::string& prob
     return i;
   }
   std::unique_ptr<File> file;
-  if (problem.empty() && regular && status.st_size > 0) {
+  if (problem.empty() && regular && status.st_size > 0 && !copies_) {
     const auto bytes = static_cast<size_t>(status.st_size);
     void* mapped = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
     if (mapped != MAP_FAILED) {

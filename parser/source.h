@@ -36,6 +36,10 @@ class Sources {
   /// same file, gives it. Nothing of it is read from the disk, where it need not be.
   void stand_in(const std::string& path, std::string text);
 
+  /// From now on files are read into memory when they are opened, instead of mapped: others may then do with them what
+  /// they like.
+  void copy_files() { copies_ = true; }
+
   /// Adds text that is no file, under the name that messages will show.
   uint32_t add_text(std::string name, std::string text);
 
@@ -70,6 +74,7 @@ class Sources {
 
   std::vector<std::unique_ptr<File>> files_;
   std::map<std::string, uint32_t> stand_ins_;  ///< By canonical path.
+  bool copies_ = false;
 };
 
 /// Text for a message: in double quotes, unprintable bytes escaped, cut after 60 characters.

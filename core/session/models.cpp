@@ -126,11 +126,10 @@ bool ModelStore::refresh() {
   return forgotten == 0;
 }
 
-std::vector<std::string> ModelStore::files() const {
-  std::vector<std::string> out;
-  for (const auto& [path, loaded] : loaded_)
-    for (const auto& [file, state] : loaded.files) out.push_back(file);
-  return out;
+std::vector<std::string> ModelStore::paths() const {
+  std::vector<std::string> paths;
+  for (const auto& [path, loaded] : loaded_) paths.push_back(path);
+  return paths;
 }
 
 void ModelStore::begin() {

@@ -28,13 +28,12 @@ class ModelStore final : public ModelReader {
   /// when there were any. Attachments that were handed out stay what they are.
   bool refresh();
 
-  /// The files that models were read from.
-  std::vector<std::string> files() const;
-
   /// A whole scene that shows a model; nothing after errors.
   std::optional<gltf::Description> scene_of(const std::string& path, const gltf::Selection& selection,
                                             Diagnostics& said);
 
+  /// The files that were asked for, whether they could be read or not.
+  std::vector<std::string> paths() const;
   /// What people may want to know of the models that were read: "car.glb: occlusion maps are not used".
   const std::vector<std::string>& notes() const { return notes_; }
 

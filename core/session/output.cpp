@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <future>
 
@@ -125,13 +126,18 @@ std::vector<std::string> files_read(const SceneDescription& world) {
   std::vector<std::string> files;
   const auto add = [&](const Entity& entity) {
     for (const Parameter& p : entity.params) {
-      if (p.name != "filename" && p.name != "mapname") continue;
+      constexpr std::array kFiles{"filename", "mapname", "lensfile", "bsdffile"};
+      const bool names_file = p.type == ParamType::Spectrum || std::count(kFiles.begin(), kFiles.end(), p.name) > 0;
+      if (!names_file) continue;
       for (const std::string& file : p.strings())
         files.push_back((std::filesystem::path(world.folder) / file).string());
     }
   };
+  add(world.camera);
   for (const auto& t : world.textures) add(t);
+  for (const auto& m : world.materials) add(m);
   for (const auto& l : world.lights) add(l);
+  for (const auto& l : world.area_lights) add(l);
   for (const auto& s : world.shapes) add(s);
   return files;
 }

@@ -27,7 +27,7 @@ struct OutputRequest {
   std::vector<std::string> read;  ///< Files that the scene reads, files_read(): no picture may take the place of one.
 };
 
-/// The files that the textures, lights and shapes of a world name, live or not.
+/// The files that the statements of a world name: pictures, meshes, models, spectra, lenses; live or not.
 std::vector<std::string> files_read(const SceneDescription& world);
 
 /// What a render writes and how. Where `said` has an error nothing should be rendered: it is at the Film statement if

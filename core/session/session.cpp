@@ -17,10 +17,10 @@ ParsedFile parsed_file(const ReadOptions& options,
   ParsedFile file;
   ModelStore of_this_reading(options.allow_outside);
   ModelStore& models = options.models ? *options.models : of_this_reading;
+  if (options.copy_files) file.sources->copy_files();
   ParseResult parsed = parse(*file.sources, models, {.read_unplaced = options.read_unplaced, .models = &models});
   file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
-  file.notes = models.notes();
-  file.model_files = models.files();
+  file.models = models.paths(), file.notes = models.notes();
   file.elapsed = watch.elapsed();
   return file;
 }
@@ -146,6 +146,23 @@ Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed)
   context.textures = world.textures.get();
   context.samples_per_pixel = world.scene->samples_per_pixel = sampler.plugin->set_samples_per_pixel(samples_per_pixel);
   sampler.plugin = prepared(std::move(sampler.plugin), context);
+  return said;
+}
+
+void set_camera(BuiltWorld& world, const Mat4d& world_to_camera) {
+  world.scene->camera_keys = {world_to_camera.gjInverse() * world.scene->space.from_world()};
+}
+
+Diagnostics set_resolution(BuiltWorld& world, Vec2i resolution) {
+  Diagnostics said;
+  Bound<Camera>& camera = world.scene->bound.camera;
+  camera.plugin->film.resolution = resolution;
+  PrepareContext context;
+  context.diagnostics = &said;
+  context.statement = camera.where;
+  context.textures = world.textures.get();
+  context.samples_per_pixel = world.scene->samples_per_pixel;
+  camera.plugin = prepared(std::move(camera.plugin), context);
   return said;
 }
 

@@ -28,7 +28,7 @@ struct ParsedFile {
   std::unique_ptr<Sources> sources = std::make_unique<Sources>();
   std::vector<SceneDescription> worlds;  ///< One for each WorldBegin.
   uint64_t bytes = 0;                    ///< Of text, included files counted each time.
-  std::vector<std::string> model_files;  ///< That the models it places were read from, but for their pictures.
+  std::vector<std::string> models;       ///< The files of models that it shows.
   std::vector<std::string> notes;        ///< What people may want to know of how models are shown.
   Diagnostics said;
   Elapsed elapsed;
@@ -38,6 +38,7 @@ struct ReadOptions {
   gltf::Selection model = {};    ///< Of a model's file that is read as a scene; of no other may anything be selected.
   bool allow_outside = false;    ///< Models may name files outside of their folder.
   ModelStore* models = nullptr;  ///< Has them from earlier readings; null: they are read for this one.
+  bool copy_files = false;       ///< Sources::copy_files().
 };
 /// A .pbrt file, or a glTF model, of which a scene is made.
 ParsedFile read_scene_file(const std::string& path, const ReadOptions& options = {});
@@ -87,6 +88,11 @@ BuiltWorld rebuild_world(PlannedWorld planned, BuildOptions options, KeptParts& 
 /// Another number of samples per pixel (as the sampler rounds it) and another seed, for what is rendered from now on: the
 /// picture is that of a world that was built with them. Not while the world is being rendered.
 Diagnostics set_samples(BuiltWorld& world, int samples_per_pixel, uint32_t seed);
+
+/// Another place of the camera, and another size of the picture, likewise. What was built stays as it is: a camera that
+/// goes very far from where it stood has the fewer digits there.
+void set_camera(BuiltWorld& world, const Mat4d& world_to_camera);
+Diagnostics set_resolution(BuiltWorld& world, Vec2i resolution);
 
 /// A picture, with what was done for it. A texture that cannot be read ends the render early, unless the world was built
 /// to keep going.

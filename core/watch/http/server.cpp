@@ -1,0 +1,102 @@
+// The server, by cpp-httplib. GET and POST alone are answered, and no connection lives longer than its request.
+#include <httplib.h>
+
+#include "core/watch/http/module.h"
+
+namespace whit {
+namespace {
+
+/// Threads for requests. Each page that is open holds one, for its events.
+constexpr size_t kThreads = 32;
+
+class Server final : public HttpServer {
+ public:
+  Server(HttpHandler handler, HttpLimit limit, std::vector<std::pair<std::string, std::string>> headers_of_all)
+      : handler_(std::move(handler)), limit_(std::move(limit)) {
+    httplib::Headers headers;
+    for (auto& header : headers_of_all) headers.insert(std::move(header));
+    server_.set_default_headers(std::move(headers));
+    server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    server_.set_keep_alive_max_count(1);
+    server_.set_tcp_nodelay(true);
+    // Without SO_REUSEPORT, which would let two servers have one port.
+    server_.set_socket_options([](socket_t sock) {
+      const int yes = 1;
+      setsockopt(sock, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    server_.set_pre_routing_handler(
+        [this](const httplib::Request& request, httplib::Response& response) { return refuse(request, response); });
+    server_.set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 417; });
+    const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
+      reply(request, response);
+    };
+    server_.Get(".*", answer);
+    server_.Post(".*", answer);
+  }
+
+  int bind(int port) override {
+    constexpr const char* kHere = "127.0.0.1";
+    if (port == 0) return std::max(server_.bind_to_any_port(kHere), 0);
+    return server_.bind_to_port(kHere, port) ? port : 0;
+  }
+  void run() override { server_.listen_after_bind(); }
+  void stop() override { server_.stop(); }
+
+ private:
+  using Handled = httplib::Server::HandlerResponse;
+
+  /// Before the body is read.
+  Handled refuse(const httplib::Request& request, httplib::Response& response) const {
+    const bool post = request.method == "POST";
+    if (request.method != "GET" && !post) response.status = 405;
+    else if (request.has_header("Transfer-Encoding") || (post && !request.has_header("Content-Length")))
+      response.status = 411;
+    else if (request.has_header("Content-Length") &&
+             request.get_header_value<uint64_t>("Content-Length") > (post ? limit_(request.path) : 0))
+      response.status = 413;
+    else return Handled::Unhandled;
+    return Handled::Handled;
+  }
+
+  void reply(const httplib::Request& request, httplib::Response& response) const {
+    HttpRequest asked{request.method, request.path, request.get_header_value("Host"),
+                      request.get_header_value("Origin"), request.get_header_value("Content-Type"), {}, request.body};
+    // Of several hosts none is to be believed.
+    if (request.get_header_value_count("Host") != 1) asked.host.clear();
+    for (const auto& [name, value] : request.params) asked.query.emplace(name, value);
+    HttpReply made = handler_(asked);
+    response.status = made.status;
+    for (const auto& [name, value] : made.headers) {
+      response.headers.erase(name);
+      response.set_header(name, value);
+    }
+    if (!made.stream) {
+      response.set_content(made.body, made.type);
+      return;
+    }
+    response.set_chunked_content_provider(
+        made.type, [stream = std::move(made.stream)](size_t, httplib::DataSink& sink) {
+          std::string piece;
+          if (!stream(piece)) {
+            sink.done();
+            return true;
+          }
+          return sink.write(piece.data(), piece.size());
+        });
+  }
+
+  HttpHandler handler_;
+  HttpLimit limit_;
+  httplib::Server server_;
+};
+
+std::unique_ptr<HttpServer> make(HttpHandler handler, HttpLimit limit,
+                                 std::vector<std::pair<std::string, std::string>> headers_of_all) {
+  return std::make_unique<Server>(std::move(handler), std::move(limit), std::move(headers_of_all));
+}
+
+}  // namespace
+}  // namespace whit
+
+// What the module hands out under a name that dlsym() can find.
+extern "C" __attribute__((visibility("default"))) const whit::HttpModule whit_http{whit::make};

@@ -1,0 +1,191 @@
+#include "core/watch/watched_files.h"
+
+#include <errno.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace whit {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// What tells a file from the one that was there before.
+struct Mark {
+  bool there = false;
+  uint64_t device = 0, inode = 0;
+  int64_t size = 0, seconds = 0, nanoseconds = 0;
+  bool operator==(const Mark&) const = default;
+  long long time() const { return seconds * 1'000'000'000LL + nanoseconds; }
+};
+
+Mark mark_of(const std::string& path) {
+  struct stat status = {};
+  if (::stat(path.c_str(), &status) != 0) return {};
+  return {true, status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+}
+
+/// "a%20b" is "a b".
+std::string percent_decoded(const std::string& text) {
+  std::string out;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto digit = [&](size_t at) { return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at])); };
+    if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
+      out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<std::string> files_of_model(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const nlohmann::json model = nlohmann::json::parse(in, nullptr, false);
+  std::vector<std::string> files;
+  if (!model.is_object()) return files;
+  for (const char* list : {"buffers", "images"}) {
+    const auto items = model.find(list);
+    if (items == model.end() || !items->is_array()) continue;
+    for (const nlohmann::json& item : *items) {
+      const auto uri = item.is_object() ? item.find("uri") : item.end();
+      if (!item.is_object() || uri == item.end() || !uri->is_string()) continue;
+      const auto text = uri->get<std::string>();
+      if (text.rfind("data:", 0) == 0) continue;
+      files.push_back((fs::path(path).parent_path() / percent_decoded(text)).string());
+    }
+  }
+  return files;
+}
+
+struct FileWatch::Impl {
+  explicit Impl(const Options& asked) : options(asked) {
+    wake_fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (options.inotify) notify_fd = ::inotify_init1(IN_CLOEXEC | IN_NONBLOCK);
+  }
+  ~Impl() {
+    if (wake_fd >= 0) ::close(wake_fd);
+    if (notify_fd >= 0) ::close(notify_fd);
+  }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  /// The folder of a file, and of what it is a link to. Nobody has to be told of a folder twice: the number is the same.
+  void add_folders(const std::string& path) {
+    std::error_code ignored;
+    for (const fs::path& file : {fs::path(path), fs::weakly_canonical(path, ignored)}) {
+      const std::string folder = file.has_parent_path() ? file.parent_path().string() : ".";
+      if (notify_fd < 0 || !folders.insert(folder).second) continue;
+      if (::inotify_add_watch(notify_fd, folder.c_str(),
+                              IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE) < 0)
+        folders.erase(folder);  // Looks will find what happens there; once it is there, so will this.
+    }
+  }
+
+  /// True when something may have happened within the time; false after it, or when woken.
+  bool wait_for_event(int milliseconds) {
+    std::array<pollfd, 2> fds{pollfd{wake_fd, POLLIN, 0}, pollfd{notify_fd, POLLIN, 0}};
+    const int n = ::poll(fds.data(), notify_fd >= 0 ? 2 : 1, milliseconds);
+    if (n <= 0) return false;
+    if ((fds[0].revents & POLLIN) != 0) {
+      uint64_t count = 0;
+      woken = ::read(wake_fd, &count, sizeof count) > 0 || woken;
+    }
+    if (notify_fd < 0 || (fds[1].revents & POLLIN) == 0) return false;
+    alignas(inotify_event) std::array<char, 1 << 14> events;
+    while (::read(notify_fd, events.data(), events.size()) > 0) {
+    }
+    return true;
+  }
+
+  /// Which files are not what they were. From now on they are.
+  std::vector<std::string> changed() {
+    const std::lock_guard lock(mutex);
+    std::vector<std::string> names;
+    for (auto& [path, mark] : marks) {
+      const Mark now = mark_of(path);
+      if (now == mark) continue;
+      mark = now;
+      names.push_back(path);
+    }
+    return names;
+  }
+
+  const Options options;
+  int wake_fd = -1, notify_fd = -1;
+  bool woken = false;
+  std::mutex mutex;
+  std::map<std::string, Mark> marks;  ///< By path.
+  std::set<std::string> folders;      ///< That inotify watches.
+};
+
+FileWatch::FileWatch() : FileWatch(Options{}) {}
+FileWatch::FileWatch(const Options& options) : impl_(std::make_unique<Impl>(options)) {}
+FileWatch::~FileWatch() = default;
+
+long long FileWatch::now_mark() {
+  // As coarse as the marks of files, which take the time of the last tick.
+  timespec now{};
+  ::clock_gettime(CLOCK_REALTIME_COARSE, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+void FileWatch::watch(const std::vector<std::string>& files, long long since) {
+  const std::lock_guard lock(impl_->mutex);
+  std::map<std::string, Mark> marks;
+  for (const std::string& path : files) {
+    impl_->add_folders(path);
+    const auto known = impl_->marks.find(path);
+    if (known != impl_->marks.end()) {
+      marks.insert(*known);
+      continue;
+    }
+    const Mark now = mark_of(path);
+    const bool fresh = now.there && now.time() > since && now.time() <= now_mark();
+    marks.emplace(path, fresh ? Mark{} : now);
+  }
+  impl_->marks = std::move(marks);
+}
+
+std::vector<std::string> FileWatch::wait(int milliseconds) {
+  const auto end = Clock::now() + std::chrono::milliseconds(milliseconds);
+  const int look = impl_->notify_fd >= 0 ? impl_->options.look_ms : impl_->options.poll_ms;
+  for (;;) {
+    std::vector<std::string> names = impl_->changed();
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
+    if (!names.empty()) return names;
+    if (left <= 0 || impl_->woken) break;
+    if (!impl_->wait_for_event(static_cast<int>(std::min<long long>(left, look)))) continue;
+    // Until it is quiet, but not for ever: something else may be written there all the time.
+    const auto longest = Clock::now() + std::chrono::milliseconds(10 * impl_->options.quiet_ms);
+    while (impl_->wait_for_event(impl_->options.quiet_ms) && Clock::now() < longest) {
+    }
+  }
+  impl_->woken = false;
+  return {};
+}
+
+void FileWatch::wake() {
+  const uint64_t one = 1;
+  [[maybe_unused]] const ssize_t n = ::write(impl_->wake_fd, &one, sizeof one);
+}
+
+}  // namespace whit
