@@ -6,20 +6,7 @@ namespace whit {
 inline constexpr const char* kPageScriptData = R"js(
 // ---- Numbers: what is in the page is decoded when it is looked at.
 
-const $ = (id) => document.getElementById(id);
 const ROWS = JSON.parse($("rows").textContent);
-
-let halfTable = null;
-function halfs() {
-  if (halfTable) return halfTable;
-  halfTable = new Float32Array(65536);
-  for (let bits = 0; bits < 65536; bits++) {
-    const sign = bits >> 15 ? -1 : 1, exponent = bits >> 10 & 31, fraction = bits & 1023;
-    halfTable[bits] = exponent === 31 ? (fraction ? NaN : sign * Infinity)
-                    : exponent === 0 ? sign * fraction * 2 ** -24 : sign * (1 + fraction / 1024) * 2 ** (exponent - 15);
-  }
-  return halfTable;
-}
 
 async function inflated(id) {
   const text = atob($(id).textContent), packed = new Uint8Array(text.length);

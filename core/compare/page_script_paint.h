@@ -6,11 +6,6 @@ namespace whit {
 inline constexpr const char* kPageScriptPaint = R"js(
 // ---- Pictures of numbers.
 
-const MAPS = Object.fromEntries(Object.entries(JSON.parse($("maps").textContent)).map(
-    ([name, hex]) => [name, Uint8Array.from(hex.match(/../g), (two) => parseInt(two, 16))]));
-const NOT_FINITE = [0, 255, 64];  // A green that neither map has.
-
-const encoded = (v) => v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055;
 const decoded = (v) => v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
 
 // From a number times 65535 to the byte for the screen.
@@ -30,12 +25,6 @@ function canvasOf(width, height, bytes) {
   canvas.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
   return {canvas, bytes, width, height, step: 1};
 }
-
-const mark = (bytes, at, colour) => {
-  bytes[at] = colour[0];
-  bytes[at + 1] = colour[1];
-  bytes[at + 2] = colour[2];
-};
 
 function coloursOf(layer, side, exposure) {
   const n = layer.width * layer.height, bytes = new Uint8ClampedArray(4 * n).fill(255), gain = 2 ** exposure;
@@ -121,15 +110,6 @@ function mapped(values, width, height, step, map, full, signed) {
     else mark(bytes, 4 * i, map.subarray(at, at + 3));
   }
   return {...canvasOf(few.width, few.height, bytes), step};
-}
-
-function rampOf(map) {
-  const stops = [];
-  for (let i = 0; i < 32; i++) {
-    const at = 3 * Math.round(i * 255 / 31);
-    stops.push(`rgb(${map[at]},${map[at + 1]},${map[at + 2]})`);
-  }
-  return `linear-gradient(90deg,${stops.join(",")})`;
 }
 )js";
 

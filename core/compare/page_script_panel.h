@@ -6,28 +6,6 @@ namespace whit {
 inline constexpr const char* kPageScriptPanel = R"js(
 // ---- Numbers and words beside the pictures. Text goes in as text, never as HTML.
 
-function element(tag, properties, ...children) {
-  const made = Object.assign(document.createElement(tag), properties);
-  made.append(...children);
-  return made;
-}
-
-const strange = (v) => v !== v ? "NaN" : v > 0 ? "+inf" : "-inf";
-
-function short(v) {
-  if (v - v !== 0) return strange(v);
-  const size = Math.abs(v);
-  if (size === 0) return "0";
-  return size >= 1e5 || size < 1e-4 ? v.toExponential(1) : String(+v.toPrecision(3));
-}
-
-function full(v) {
-  if (v - v !== 0) return strange(v);
-  const size = Math.abs(v);
-  if (size === 0) return Object.is(v, -0) ? "-0" : "0";
-  return size >= 1e7 || size < 1e-5 ? v.toExponential(5) : String(+v.toPrecision(6));
-}
-
 // A difference of such numbers has fewer digits that mean something.
 const fewer = (v) => v - v === 0 && Math.abs(v) >= 1e-5 && Math.abs(v) < 1e7 ? String(+v.toPrecision(4)) : full(v);
 

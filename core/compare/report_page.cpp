@@ -10,6 +10,7 @@
 #include "core/compare/colour_maps.h"
 #include "core/compare/page_markup.h"
 #include "core/compare/page_row.h"
+#include "core/compare/page_script_base.h"
 #include "core/compare/page_script_data.h"
 #include "core/compare/page_script_main.h"
 #include "core/compare/page_script_paint.h"
@@ -113,7 +114,8 @@ std::string ReportPage::html(const std::string& title) const {
   out += kPageMarkup;
   out += "</main>\n";
   out += data_html(rows) + "<script>\n\"use strict\";\n";
-  for (const char* piece : {kPageScriptData, kPageScriptPaint, kPageScriptView, kPageScriptPanel, kPageScriptMain})
+  for (const char* piece :
+       {kPageScriptBase, kPageScriptData, kPageScriptPaint, kPageScriptView, kPageScriptPanel, kPageScriptMain})
     out += piece;
   return out + "</script>\n</body>\n</html>\n";
 }

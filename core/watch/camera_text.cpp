@@ -77,7 +77,8 @@ Mat4d product(const std::vector<Step>& steps, size_t first, size_t last) {
 double difference(const Mat4d& a, const Mat4d& b) {
   double most = 0, size = 1e-300;
   for (int r = 0; r < 4; ++r) {
-    for (int c = 0; c < 4; ++c) most = std::max(most, std::abs(a[r][c] - b[r][c])), size = std::max(size, std::abs(b[r][c]));
+    for (int c = 0; c < 4; ++c)
+      most = std::max(most, std::abs(a[r][c] - b[r][c])), size = std::max(size, std::abs(b[r][c]));
   }
   return most / size;
 }
@@ -118,8 +119,8 @@ std::string look_at_text(const Mat4d& m, double distance, const Vec3d& preferred
     const Vec3d target = pose.eye + pose.direction * distance;
     for (int digits = 6; digits <= 17; ++digits) {
       const double size = std::max(size_of(pose.eye), size_of(target));
-      const auto read = looking_at(rounded(pose.eye, digits, size), rounded(target, digits, size),
-                                   rounded(up, digits, size_of(up)));
+      const auto read =
+          looking_at(rounded(pose.eye, digits, size), rounded(target, digits, size), rounded(up, digits, size_of(up)));
       if (!read || difference(*read, m) > 1e-9) continue;
       return fmt::format("LookAt {}  {}  {}", numbers(pose.eye, digits, size), numbers(target, digits, size),
                          numbers(up, digits, size_of(up)));
@@ -232,9 +233,10 @@ CameraEdit camera_edit(const Sources& sources, const SceneDescription& world, co
   }
   edit.begin = steps.front().begin, edit.end = steps.back().end;
   if (contiguous(steps, sources.text(edit.file))) return edit;
-  return refused(fmt::format("{} statements place the camera, with others or comments between them (from line {}): put "
-                             "this in their place yourself",
-                             steps.size(), sources.place({edit.file, edit.begin}).line));
+  return refused(
+      fmt::format("{} statements place the camera, with others or comments between them (from line {}): put "
+                  "this in their place yourself",
+                  steps.size(), sources.place({edit.file, edit.begin}).line));
 }
 
 Vec3d up_of_camera(const Sources& sources, const SceneDescription& world) {

@@ -47,8 +47,8 @@ constexpr size_t kProblemsShown = 50;
 struct World {
   std::shared_ptr<ParsedFile> file;
   BuiltWorld built;
-  Mat4d base;             ///< World to camera, as the file has it.
-  Vec3d up;               ///< Of the file's LookAt.
+  Mat4d base;  ///< World to camera, as the file has it.
+  Vec3d up;    ///< Of the file's LookAt.
   Vec2i resolution{0, 0};
   mutable std::mutex changing;  ///< Held while the scene changes, or is looked at by others than the renderer.
 
@@ -123,8 +123,9 @@ std::vector<std::string> files_of(const std::string& path, const ParsedFile& fil
   // There may be a hundred thousand: in order, each once.
   std::sort(named.begin(), named.end());
   named.erase(std::unique(named.begin(), named.end()), named.end());
-  std::copy_if(named.begin(), named.end(), std::back_inserter(files),
-               [&, first = files](const std::string& n) { return std::find(first.begin(), first.end(), n) == first.end(); });
+  std::copy_if(named.begin(), named.end(), std::back_inserter(files), [&, first = files](const std::string& n) {
+    return std::find(first.begin(), first.end(), n) == first.end();
+  });
   return files;
 }
 

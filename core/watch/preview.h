@@ -29,10 +29,10 @@ struct PreviewRequest {
 
 /// A picture as far as it is: linear colours, red, green and blue of each pixel as half floats.
 struct PreviewPicture {
-  uint64_t number = 0;   ///< Later ones have larger numbers.
-  uint64_t reading = 0;  ///< Of which reading of the scene it is: PreviewState::reading then.
-  Vec2i resolution{0, 0};  ///< Of the whole picture.
-  Box2i window;            ///< What of it is here, the maximum excluded, in pixels of the whole picture.
+  uint64_t number = 0;        ///< Later ones have larger numbers.
+  uint64_t reading = 0;       ///< Of which reading of the scene it is: PreviewState::reading then.
+  Vec2i resolution{0, 0};     ///< Of the whole picture.
+  Box2i window;               ///< What of it is here, the maximum excluded, in pixels of the whole picture.
   int width = 0, height = 0;  ///< Of the numbers; less than the window's where it is coarse.
   double samples = 0;         ///< For each pixel.
   bool done = false;
@@ -62,7 +62,7 @@ struct PreviewEffect {
 };
 
 struct PreviewCamera {
-  CameraPose pose;       ///< Up is what the file calls up.
+  CameraPose pose;        ///< Up is what the file calls up.
   bool mirrored = false;  ///< Left and right are changed.
   bool movable = false;
   bool moved = false;   ///< It is not where the file has it.

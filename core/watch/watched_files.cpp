@@ -44,7 +44,9 @@ Mark mark_of(const std::string& path) {
 std::string percent_decoded(const std::string& text) {
   std::string out;
   for (size_t i = 0; i < text.size(); ++i) {
-    const auto digit = [&](size_t at) { return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at])); };
+    const auto digit = [&](size_t at) {
+      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at]));
+    };
     if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
       out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
       i += 2;
@@ -111,8 +113,7 @@ struct FileWatch::Impl {
     }
     if (notify_fd < 0 || (fds[1].revents & POLLIN) == 0) return false;
     alignas(inotify_event) std::array<char, 1 << 14> events;
-    while (::read(notify_fd, events.data(), events.size()) > 0) {
-    }
+    while (::read(notify_fd, events.data(), events.size()) > 0) {}
     return true;
   }
 
@@ -176,8 +177,7 @@ std::vector<std::string> FileWatch::wait(int milliseconds) {
     if (!impl_->wait_for_event(static_cast<int>(std::min<long long>(left, look)))) continue;
     // Until it is quiet, but not for ever: something else may be written there all the time.
     const auto longest = Clock::now() + std::chrono::milliseconds(10 * impl_->options.quiet_ms);
-    while (impl_->wait_for_event(impl_->options.quiet_ms) && Clock::now() < longest) {
-    }
+    while (impl_->wait_for_event(impl_->options.quiet_ms) && Clock::now() < longest) {}
   }
   impl_->woken = false;
   return {};

@@ -14,9 +14,9 @@ std::vector<std::string> files_of_model(const std::string& path);
 class FileWatch {
  public:
   struct Options {
-    int quiet_ms = 20;     ///< Nothing has happened for so long when a change is told: editors do several things at once.
-    int look_ms = 2000;    ///< Between looks, with inotify;
-    int poll_ms = 300;     ///< and without.
+    int quiet_ms = 20;   ///< Nothing has happened for so long when a change is told: editors do several things at once.
+    int look_ms = 2000;  ///< Between looks, with inotify;
+    int poll_ms = 300;   ///< and without.
     bool inotify = true;
   };
 

@@ -14,6 +14,7 @@ inline constexpr int kDone = 0, kNo = 1, kUsage = 2, kSceneError = 3, kFileError
 int render_command(const Arguments& args);   ///< whit [render] SCENE...
 int check_command(const Arguments& args);    ///< whit check SCENE...
 int fmt_command(const Arguments& args);      ///< whit fmt SCENE
+int watch_command(const Arguments& args);    ///< whit watch SCENE
 int explain_command(const Arguments& args);  ///< whit explain SCENE
 int cost_command(const Arguments& args);     ///< whit cost SCENE
 int import_command(const Arguments& args);   ///< whit import MODEL -o SCENE

@@ -59,8 +59,13 @@ class Server final : public HttpServer {
   }
 
   void reply(const httplib::Request& request, httplib::Response& response) const {
-    HttpRequest asked{request.method, request.path, request.get_header_value("Host"),
-                      request.get_header_value("Origin"), request.get_header_value("Content-Type"), {}, request.body};
+    HttpRequest asked{request.method,
+                      request.path,
+                      request.get_header_value("Host"),
+                      request.get_header_value("Origin"),
+                      request.get_header_value("Content-Type"),
+                      {},
+                      request.body};
     // Of several hosts none is to be believed.
     if (request.get_header_value_count("Host") != 1) asked.host.clear();
     for (const auto& [name, value] : request.params) asked.query.emplace(name, value);
@@ -74,15 +79,15 @@ class Server final : public HttpServer {
       response.set_content(made.body, made.type);
       return;
     }
-    response.set_chunked_content_provider(
-        made.type, [stream = std::move(made.stream)](size_t, httplib::DataSink& sink) {
-          std::string piece;
-          if (!stream(piece)) {
-            sink.done();
-            return true;
-          }
-          return sink.write(piece.data(), piece.size());
-        });
+    response.set_chunked_content_provider(made.type,
+                                          [stream = std::move(made.stream)](size_t, httplib::DataSink& sink) {
+                                            std::string piece;
+                                            if (!stream(piece)) {
+                                              sink.done();
+                                              return true;
+                                            }
+                                            return sink.write(piece.data(), piece.size());
+                                          });
   }
 
   HttpHandler handler_;
