@@ -8,6 +8,8 @@
 #include <condition_variable>
 #include <deque>
 #include <filesystem>
+#include <iterator>
+#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>
@@ -32,9 +34,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 enum Wish : uint32_t { kRead = 1, kBuild = 2, kCamera = 4, kStop = 8 };
 
 /// First pixels come within so many seconds, as far as that can be known.
-constexpr double kFirstSeconds = 0.06;
+constexpr double kFirstSeconds = 0.05;
 /// A whole pass that takes less needs no coarse one before it.
-constexpr double kShortPass = 0.12;
+constexpr double kShortPass = 0.08;
 constexpr int kCoarsest = 16;
 /// Passes add no more samples than that: the longest tile must be over soon when something changes.
 constexpr uint32_t kMostAdded = 16;
@@ -144,7 +146,8 @@ const char* phase_name(PreviewPhase phase) {
 struct Preview::Impl {
   explicit Impl(PreviewRequest asked) : request(std::move(asked)), off(request.off) {
     files.watch({request.path}, FileWatch::now_mark());
-    state.files = {request.path};
+    watched = {request.path};
+    state.files = 1;
     worker = std::thread([this] { work(); });
     watcher = std::thread([this] { watch(); });
   }
@@ -257,17 +260,17 @@ struct Preview::Impl {
     std::vector<std::string> names = files_of(request.path, *read);
     if (read->said.has_errors() || read->worlds.empty()) {
       // What the last text was made of still counts: the mistake may be gone when one of these is back.
-      const std::lock_guard lock(mutex);
-      for (const std::string& name : state.files) {
-        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-      }
+      names.insert(names.end(), watched.begin(), watched.end());
+      std::sort(names.begin(), names.end());
+      names.erase(std::unique(names.begin(), names.end()), names.end());
     }
     files.watch(names, started);
+    watched = names;
     files.wake();
     const std::string problem = override_worlds(*read, request.overrides);
     if (!problem.empty()) read->said.add({Severity::Error, ErrorClass::Usage, {}, problem});
     publish([&](PreviewState& s) {
-      s.files = names;
+      s.files = names.size();
       s.read_seconds = read->elapsed.wall;
       s.worlds = read->worlds.size();
       ++s.reading;
@@ -511,6 +514,7 @@ struct Preview::Impl {
 
   // The worker's own.
   std::shared_ptr<ParsedFile> file;  ///< As last read, be it with errors.
+  std::vector<std::string> watched;  ///< Files.
   std::map<Effect, double> costs;
   double rate = 0;  ///< Samples a second.
   Clock::time_point changed_at, last_picture;

@@ -90,7 +90,7 @@ struct PreviewState {
   PreviewCamera camera;
   std::string integrator;
   size_t triangles = 0, lights = 0, worlds = 0;
-  std::vector<std::string> files;  ///< That are watched.
+  size_t files = 0;  ///< That are watched.
 };
 
 /// What is at a place of the picture.

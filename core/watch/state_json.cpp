@@ -82,7 +82,7 @@ std::string state_json(const std::string& scene, const PreviewState& s, const Wa
             {"triangles", s.triangles},
             {"lights", s.lights},
             {"worlds", s.worlds},
-            {"file_count", s.files.size()},
+            {"file_count", s.files},
             {"camera", of(s.camera)},
             {"problems_left_out", s.problems_left_out},
             {"views", extras.views}};

@@ -25,13 +25,12 @@ class Server final : public HttpServer {
       setsockopt(sock, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
     });
     server_.set_pre_routing_handler(
-        [this](const httplib::Request& request, httplib::Response& response) { return refuse(request, response); });
+        [this](const httplib::Request& request, httplib::Response& response) { return answer(request, response); });
     server_.set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 417; });
-    const auto answer = [this](const httplib::Request& request, httplib::Response& response) {
+    // Everything without a body is answered before paths are matched by a regular expression.
+    server_.Post("[^]*", [this](const httplib::Request& request, httplib::Response& response) {
       reply(request, response);
-    };
-    server_.Get(".*", answer);
-    server_.Post(".*", answer);
+    });
   }
 
   int bind(int port) override {
@@ -45,16 +44,21 @@ class Server final : public HttpServer {
  private:
   using Handled = httplib::Server::HandlerResponse;
 
-  /// Before the body is read.
-  Handled refuse(const httplib::Request& request, httplib::Response& response) const {
+  /// Before a body is read: refuses what is too long or has no length, and answers what has none.
+  Handled answer(const httplib::Request& request, httplib::Response& response) const {
     const bool post = request.method == "POST";
-    if (request.method != "GET" && !post) response.status = 405;
-    else if (request.has_header("Transfer-Encoding") || (post && !request.has_header("Content-Length")))
+    const size_t length = request.get_header_value<uint64_t>("Content-Length");
+    if (request.method != "GET" && !post) {
+      response.status = 405;
+    } else if (request.has_header("Transfer-Encoding") || (post && !request.has_header("Content-Length"))) {
       response.status = 411;
-    else if (request.has_header("Content-Length") &&
-             request.get_header_value<uint64_t>("Content-Length") > (post ? limit_(request.path) : 0))
+    } else if (length > (post ? limit_(request.path) : 0)) {
       response.status = 413;
-    else return Handled::Unhandled;
+    } else if (post) {
+      return Handled::Unhandled;
+    } else {
+      reply(request, response);
+    }
     return Handled::Handled;
   }
 
