@@ -243,7 +243,7 @@ struct Preview::Impl {
     said.append(find_surprises(description, planned.plan));
     auto made = std::make_shared<World>();
     made->file = file;
-    made->built = build_world(std::move(planned), request.build, request.texture_bytes);
+    made->built = rebuild(std::move(planned));
     said.append(made->built.said);
     if (said.has_errors() || !made->built.scene) return tell(said, true);
     made->base = description.transforms[static_cast<size_t>(description.camera_transform)].start;
@@ -252,11 +252,18 @@ struct Preview::Impl {
     take_over(std::move(made), said, building.elapsed().wall);
   }
 
+  /// Meshes and textures that did not change stay what they are, and nobody looks at them meanwhile.
+  BuiltWorld rebuild(PlannedWorld planned) {
+    std::unique_lock<std::mutex> lock;
+    if (world) lock = std::unique_lock(world->changing);
+    return rebuild_world(std::move(planned), request.build, kept, request.texture_bytes);
+  }
+
   void read_file() {
     const long long started = FileWatch::now_mark();
     ReadOptions options = request.read;
     options.copy_files = true;
-    auto read = std::make_shared<ParsedFile>(read_scene_file(request.path, options));
+    auto read = std::make_shared<ParsedFile>(reread_scene_file(request.path, options, kept));
     std::vector<std::string> names = files_of(request.path, *read);
     if (read->said.has_errors() || read->worlds.empty()) {
       // What the last text was made of still counts: the mistake may be gone when one of these is back.
@@ -489,7 +496,7 @@ struct Preview::Impl {
       plan.off.add(e);
       PlannedWorld planned = plan_world(world->description(), world->sources(), plan);
       if (planned.said.has_errors()) return;
-      const BuiltWorld without = build_world(std::move(planned), request.build, request.texture_bytes);
+      const BuiltWorld without = rebuild(std::move(planned));
       if (!without.scene) return;
       const std::optional<double> share = study.share_without(without, request.threads);
       if (!share) return;
@@ -513,6 +520,7 @@ struct Preview::Impl {
   std::shared_ptr<World> world;  ///< Changed by the worker alone.
 
   // The worker's own.
+  KeptParts kept;
   std::shared_ptr<ParsedFile> file;  ///< As last read, be it with errors.
   std::vector<std::string> watched;  ///< Files.
   std::map<Effect, double> costs;

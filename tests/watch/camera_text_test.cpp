@@ -69,8 +69,9 @@ TEST(CameraText, MovedCamerasStandWhereTheyShould) {
 }
 
 TEST(CameraText, KeepsWhatMirrorsAndScales) {
-  for (const char* before : {"Scale -1 1 1\nLookAt 0 0 -5  0 0 0  0 1 0\n", "LookAt 0 0 -5  0 0 0  0 1 0\nScale -1 1 1\n",
-                             "Scale 2 2 2\nLookAt 0 0 -5  0 0 0  0 1 0\n"}) {
+  for (const char* before :
+       {"Scale -1 1 1\nLookAt 0 0 -5  0 0 0  0 1 0\n", "LookAt 0 0 -5  0 0 0  0 1 0\nScale -1 1 1\n",
+        "Scale 2 2 2\nLookAt 0 0 -5  0 0 0  0 1 0\n"}) {
     const std::string text = moved(before + std::string("Camera \"perspective\"\n") + kWorld, kPose);
     EXPECT_NE(text.find("Scale"), std::string::npos) << text;
     EXPECT_NE(text.find("LookAt"), std::string::npos) << text;
@@ -78,7 +79,8 @@ TEST(CameraText, KeepsWhatMirrorsAndScales) {
 }
 
 TEST(CameraText, ReplacesTheLookAtAlone) {
-  const std::string text = moved("# before\nLookAt 0 0 -5  # eye\n  0 0 0 0 1 0  # behind\nCamera \"perspective\"\n" + kWorld, kPose);
+  const std::string text =
+      moved("# before\nLookAt 0 0 -5  # eye\n  0 0 0 0 1 0  # behind\nCamera \"perspective\"\n" + kWorld, kPose);
   EXPECT_EQ(text.substr(0, 9), "# before\n");
   EXPECT_NE(text.find("  # behind\nCamera"), std::string::npos) << text;
   EXPECT_NE(text.find("LookAt 1.25 -2 3.5  "), std::string::npos) << text;
@@ -89,10 +91,10 @@ TEST(CameraText, ReplacesTheLookAtAlone) {
 
 TEST(CameraText, EveryKindOfPlace) {
   for (const char* before :
-       {"", "Translate 0 0 5\n", "Rotate 30 0 1 0\nTranslate 0 0 5\n", "Translate 0 0 5\nRotate 180 1 0 0\nScale -1 1 1\n",
-        "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1]\n", "ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1]\n",
-        "Translate 9 9 9\nIdentity\nLookAt 0 0 -5 0 0 0 0 1 0\n", "Rotate 10 0 0 1\nLookAt 0 0 -5 0 0 0 0 1 0\nTranslate 1 0 0\n",
-        "Scale 1 2 3\nTranslate 0 1 0\n"})
+       {"", "Translate 0 0 5\n", "Rotate 30 0 1 0\nTranslate 0 0 5\n",
+        "Translate 0 0 5\nRotate 180 1 0 0\nScale -1 1 1\n", "Transform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1]\n",
+        "ConcatTransform [1 0 0 0 0 1 0 0 0 0 1 0 0 0 5 1]\n", "Translate 9 9 9\nIdentity\nLookAt 0 0 -5 0 0 0 0 1 0\n",
+        "Rotate 10 0 0 1\nLookAt 0 0 -5 0 0 0 0 1 0\nTranslate 1 0 0\n", "Scale 1 2 3\nTranslate 0 1 0\n"})
     moved(before + std::string("Camera \"perspective\"\n") + kWorld, kPose);
 }
 
@@ -100,8 +102,7 @@ TEST(CameraText, LargeAndSmallScenesKeepTheirDigits) {
   for (const double size : {1e-4, 1.0, 1e5}) {
     const Read before = read_text("LookAt 0 0 -5  0 0 0  0 1 0\nCamera \"perspective\"\n" + kWorld);
     const CameraPose pose{Vec3d(1.0 / 3, 2.0 / 3, 1.0 / 7) * size, Vec3d(1, 2, 3).normalized(), {0, 1, 0}};
-    const CameraEdit edit =
-        camera_edit(*before.sources, before.world(), placed_at(before.camera(), pose), {0, 1, 0});
+    const CameraEdit edit = camera_edit(*before.sources, before.world(), placed_at(before.camera(), pose), {0, 1, 0});
     const CameraPose read = pose_of(read_text(edited(before, edit)).camera());
     EXPECT_LT((read.eye - pose.eye).length(), 1e-6 * size) << edit.text;
     EXPECT_LT((read.direction - pose.direction).length(), 1e-6) << edit.text;
@@ -114,10 +115,14 @@ TEST(CameraText, RefusesWhatItDoesNotUnderstand) {
     return camera_edit(*read.sources, read.world(), read.camera(), {0, 1, 0}).problem;
   };
   EXPECT_NE(problem(kWorld).find("no Camera"), std::string::npos);
-  EXPECT_NE(problem("ActiveTransform StartTime Translate 0 0 5 ActiveTransform All\nCamera \"perspective\"\n" + kWorld).find("moves"),
+  EXPECT_NE(problem("ActiveTransform StartTime Translate 0 0 5 ActiveTransform All\nCamera \"perspective\"\n" + kWorld)
+                .find("moves"),
             std::string::npos);
-  EXPECT_NE(problem("Translate 0 0 5 # far\nRotate 5 0 1 0\nCamera \"perspective\"\n" + kWorld).find("from line 1"), std::string::npos);
-  EXPECT_NE(problem("Translate 0 0 5\nCoordinateSystem \"there\"\nIdentity\nCoordSysTransform \"there\"\nCamera \"perspective\"\n" + kWorld)
+  EXPECT_NE(problem("Translate 0 0 5 # far\nRotate 5 0 1 0\nCamera \"perspective\"\n" + kWorld).find("from line 1"),
+            std::string::npos);
+  EXPECT_NE(problem("Translate 0 0 5\nCoordinateSystem \"there\"\nIdentity\nCoordSysTransform \"there\"\nCamera "
+                    "\"perspective\"\n" +
+                    kWorld)
                 .find("not all stand"),
             std::string::npos);
 }
@@ -128,7 +133,8 @@ TEST(CameraText, UpIsTheFiles) {
 }
 
 TEST(CameraText, WritesOnlyOverWhatWasRead) {
-  const std::string path = test::temp_path("scene.pbrt"), text = "LookAt 0 0 -5 0 0 0 0 1 0\nCamera \"perspective\"\n" + kWorld;
+  const std::string path = test::temp_path("scene.pbrt"),
+                    text = "LookAt 0 0 -5 0 0 0 0 1 0\nCamera \"perspective\"\n" + kWorld;
   const auto put = [&](const std::string& t) { std::ofstream(path, std::ios::binary) << t; };
   const auto get = [&] {
     std::ifstream in(path, std::ios::binary);

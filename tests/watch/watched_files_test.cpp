@@ -33,7 +33,9 @@ class Folder {
 
 class Watched : public testing::TestWithParam<bool> {
  protected:
-  FileWatch::Options options() const { return {.quiet_ms = 5, .look_ms = 60'000, .poll_ms = 20, .inotify = GetParam()}; }
+  FileWatch::Options options() const {
+    return {.quiet_ms = 5, .look_ms = 60'000, .poll_ms = 20, .inotify = GetParam()};
+  }
   /// Waits as long as it may take on a busy machine.
   static Names wait(FileWatch& watch) { return watch.wait(20'000); }
   Folder folder;

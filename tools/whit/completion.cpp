@@ -152,7 +152,8 @@ std::string zsh_action(const FlagDescription& flag) {
 }
 
 std::string zsh_specs(const FlagDescription& flag) {
-  if (flag.names.empty()) return fmt::format(" \\\n    {}", zsh_quoted((flag.repeats ? "*" : "") + zsh_action(flag)));
+  if (flag.names.empty())
+    return fmt::format(" \\\n    {}", zsh_quoted(fmt::format("{}{}", flag.repeats ? "*" : "", zsh_action(flag))));
   const std::string help = replaced(replaced(brief(flag.help), "[", "\\["), "]", "\\]");
   std::string text;
   for (const std::string& name : flag.names) {

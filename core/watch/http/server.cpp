@@ -28,9 +28,8 @@ class Server final : public HttpServer {
         [this](const httplib::Request& request, httplib::Response& response) { return answer(request, response); });
     server_.set_expect_100_continue_handler([](const httplib::Request&, httplib::Response&) { return 417; });
     // Everything without a body is answered before paths are matched by a regular expression.
-    server_.Post("[^]*", [this](const httplib::Request& request, httplib::Response& response) {
-      reply(request, response);
-    });
+    server_.Post("[^]*",
+                 [this](const httplib::Request& request, httplib::Response& response) { reply(request, response); });
   }
 
   int bind(int port) override {
