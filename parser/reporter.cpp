@@ -1,6 +1,14 @@
 #include "parser/reporter.h"
 
+#include <algorithm>
+
 namespace whit {
+namespace {
+
+/// Differences of another version that are listed.
+constexpr size_t kMostForeign = 12;
+
+}  // namespace
 
 bool Reporter::admit(SourcePos where, Severity severity) {
   ++problems_;
@@ -19,14 +27,25 @@ void Reporter::foreign(SourcePos where, const std::string& version, Severity sev
   ++problems_;
   if (severity == Severity::Error) ++errors_;
   const std::string reads = "whit reads pbrt-v3, and passes over what " + version + " alone has";
-  const auto [said, first] = foreign_.try_emplace(
-      version, Diagnostic{severity, ErrorClass::Scene, where, "this is a " + version + " file: " + what,
-                          remedy.empty() ? reads : remedy + "; " + reads});
-  if (severity == Severity::Error) said->second.severity = severity;
+  const auto [slot, first] = foreign_.try_emplace(
+      version, Foreign{Diagnostic{severity, ErrorClass::Scene, where, "this is a " + version + " file: " + what,
+                                  remedy.empty() ? reads : remedy + "; " + reads},
+                       {}});
+  Foreign& known = slot->second;
+  if (severity == Severity::Error) known.said.severity = severity;
+  const std::string line = remedy.empty() ? what : what + ": " + remedy;
+  if (!first && std::find(known.also.begin(), known.also.end(), line) == known.also.end() &&
+      known.said.message.find(what) == std::string::npos && known.also.size() <= kMostForeign)
+    known.also.push_back(line);
 }
 
 void Reporter::finish() {
-  for (const auto& [version, diagnostic] : foreign_) out_.add(diagnostic);
+  for (auto& [version, known] : foreign_) {
+    for (size_t i = 0; i < known.also.size(); ++i)
+      known.said.remedy += i == kMostForeign ? "\nand more" : "\n" + known.also[i];
+    known.said.name = "other-version";
+    out_.add(known.said);
+  }
   foreign_.clear();
   for (const Tally& tally : files_) {
     if (tally.warnings > kMost)

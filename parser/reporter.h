@@ -22,8 +22,8 @@ class Reporter {
   void file_error(SourcePos where, std::string message, Remedy remedy = {}) {
     if (admit(where, Severity::Error)) out_.file_error(where, std::move(message), std::move(remedy));
   }
-  void warning(SourcePos where, std::string message, Remedy remedy = {}) {
-    if (admit(where, Severity::Warning)) out_.warning(where, std::move(message), std::move(remedy));
+  void warning(SourcePos where, std::string message, Remedy remedy = {}, const char* name = "") {
+    if (admit(where, Severity::Warning)) out_.warning(where, std::move(message), std::move(remedy), name);
   }
 
   /// A mistake that pbrt-v3 renders past: a warning, which `whit check` calls an error. `other` is a second place.
@@ -38,8 +38,8 @@ class Reporter {
     if (admit(found.where, found.severity)) out_.add(found);
   }
 
-  /// Takes down that the text is of another version of pbrt: finish() says so once, at the first place. `what` is what
-  /// shows it; `remedy` what to write instead, if there is such a thing.
+  /// Takes down that the text is of another version of pbrt: finish() says so once, at the first place, with a list of
+  /// what differs. `what` is what shows it; `remedy` what to write instead, if there is such a thing.
   void foreign(SourcePos where, const std::string& version, Severity severity, const std::string& what,
                const std::string& remedy = {});
   /// True when the text is known to be of that version.
@@ -65,7 +65,12 @@ class Reporter {
   Diagnostics& out_;
   uint64_t errors_ = 0, problems_ = 0;
   std::vector<Tally> files_;
-  std::map<std::string, Diagnostic> foreign_;
+  /// What was said of one version, and what else of the text is of it, each once.
+  struct Foreign {
+    Diagnostic said;
+    std::vector<std::string> also;
+  };
+  std::map<std::string, Foreign> foreign_;
 };
 
 }  // namespace whit

@@ -165,13 +165,18 @@ void SceneBuilder::look_at(Statement& s) {
   }
 }
 
-void SceneBuilder::coordinate_system(Statement& s) { coordinate_systems_[s.names[0]] = transforms_.ctm; }
+void SceneBuilder::coordinate_system(Statement& s) {
+  auto& described = scene().coordinate_systems;
+  coordinate_systems_[s.names[0]] = {transforms_.ctm, static_cast<int>(described.size())};
+  described.push_back({s.names[0], s.where});
+}
 
 void SceneBuilder::coord_sys_transform(Statement& s) {
   const auto found = coordinate_systems_.find(s.names[0]);
   if (found != coordinate_systems_.end()) {
     // Both times, whatever ActiveTransform says: pbrt does the same.
-    transforms_.ctm = found->second;
+    transforms_.ctm = found->second.ctm;
+    if (const int i = found->second.described; i >= 0) scene().coordinate_systems[static_cast<size_t>(i)].used = true;
     return;
   }
   if (object_has_gaps_) return;  // It may be defined there.
@@ -232,7 +237,7 @@ void SceneBuilder::camera(Statement& s) {
   options_.camera = entity(s);
   camera_transform_ = transforms_.ctm;
   // Gauss-Jordan, because Imath's faster inverse gives up on tiny determinants.
-  coordinate_systems_["camera"] = {transforms_.ctm.start.gjInverse(), transforms_.ctm.end.gjInverse()};
+  coordinate_systems_["camera"] = {{transforms_.ctm.start.gjInverse(), transforms_.ctm.end.gjInverse()}};
 }
 
 /// Makes the string parameter "type" of a MakeNamed... statement its plugin.
@@ -306,7 +311,7 @@ void SceneBuilder::begin_world(Statement& s) {
   world.materials.push_back(std::move(matte));
   transforms_.ctm = TransformPair();
   transforms_.start_active = transforms_.end_active = true;
-  coordinate_systems_["world"] = transforms_.ctm;
+  coordinate_systems_["world"] = {transforms_.ctm};
 }
 
 void SceneBuilder::end_world(Statement&) { close_world("WorldEnd"); }
@@ -321,13 +326,17 @@ void SceneBuilder::close_world(const std::string& before) {
   definitions_.clear();
   for (Names* names : {&float_textures_, &spectrum_textures_, &named_materials_, &objects_}) names->clear();
   coordinate_systems_.clear();
+  block_ = last_block_ = 0;
   current_object_ = warned_area_light_ = -1;
   nested_objects_ = 0;
   object_has_gaps_ = in_world_ = false;
 }
 
 void SceneBuilder::save_transforms(BlockBegin begin) { saved_transforms_.push_back({begin, transforms_}); }
-void SceneBuilder::save_graphics(BlockBegin begin) { saved_graphics_.push_back({begin, state_, definitions_.size()}); }
+void SceneBuilder::save_graphics(BlockBegin begin) {
+  saved_graphics_.push_back({begin, state_, definitions_.size(), block_});
+  block_ = ++last_block_;
+}
 
 void SceneBuilder::return_transforms(BlockKind kind, SourcePos end) {
   if (saved_transforms_.empty()) {
@@ -350,6 +359,7 @@ void SceneBuilder::return_graphics(BlockKind kind, SourcePos end) {
   const SavedGraphics& saved = saved_graphics_.back();
   if (kind != saved.begin.kind) note_crossing(crossed_graphics_, kind, end, saved.begin);
   state_ = saved.state;
+  block_ = saved.block;
   for (; definitions_.size() > saved.definitions; definitions_.pop_back()) {
     Definition& undone = definitions_.back();
     if (undone.before == kNoName) {
@@ -538,6 +548,7 @@ void SceneBuilder::texture(Statement& s) {
   TextureDescription out;
   out.name = s.names[0];
   out.spectrum = type != "float";
+  out.block = block_;
   out.transform = current_transform(s, true);
   out.picture = take_attachment<PictureBytes>(s.parameters);
   static_cast<Entity&>(out) = entity(s, 2);
@@ -550,6 +561,7 @@ void SceneBuilder::add_material(Entity made, std::string name) {
   MaterialDescription out;
   static_cast<Entity&>(out) = std::move(made);
   out.name = std::move(name);
+  out.block = block_;
   for (const Parameter& parameter : out.params) {
     for (size_t i = 0; i < parameter.strings().size(); ++i) {
       const std::string& value = parameter.strings()[i];
@@ -578,7 +590,7 @@ void SceneBuilder::make_named_material(Statement& s) {
   }
   if (look_up(named_materials_, name) >= 0)
     reporter_.warning(s.names_at[0], "named material " + in_quotes(name) + " is defined again",
-                      "the new one is used from here on");
+                      "the new one is used from here on", "redefined-material");
   add_material(std::move(made), name);
   define(named_materials_, name, static_cast<int>(scene().materials.size() - 1));
 }

@@ -126,6 +126,7 @@ class SceneBuilder {
     BlockBegin begin;
     GraphicsState state;
     size_t definitions;  ///< How many of definitions_ there were before.
+    int block;           ///< Of the graphics state around it.
   };
 
   /// An end that took what the begin of another kind of block had saved, and what it had to do with.
@@ -190,7 +191,12 @@ class SceneBuilder {
   Crossings crossed_transforms_, crossed_graphics_;  ///< Those whose other half is still to come.
   Names float_textures_, spectrum_textures_, named_materials_, objects_;
   std::vector<Definition> definitions_;
-  std::unordered_map<std::string, TransformPair> coordinate_systems_;
+  struct CoordinateSystem {
+    TransformPair ctm;
+    int described = -1;  ///< Index into SceneDescription::coordinate_systems; -1 for "camera" and "world".
+  };
+  std::unordered_map<std::string, CoordinateSystem> coordinate_systems_;
+  int block_ = 0, last_block_ = 0;  ///< TextureDescription::block, and the highest number so far.
   int current_object_ = -1;
   size_t nested_objects_ = 0;     ///< ObjectBegins in the object that were errors, and have yet to end.
   bool object_has_gaps_ = false;  ///< A file included in it was left unread.

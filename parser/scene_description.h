@@ -56,10 +56,12 @@ struct TextureDescription : Entity {
   bool spectrum = false;                        ///< "spectrum"/"color" texture, else "float".
   std::shared_ptr<const PictureBytes> picture;  ///< Instead of a file, where a model brought it.
   int transform = 0;                            ///< CTM (texture to world) at the statement.
+  int block = 0;  ///< Where the name is known: the innermost block, numbered; 0 is the world.
 };
 
 struct MaterialDescription : Entity {
   std::string name;  ///< Of MakeNamedMaterial; "" for Material.
+  int block = 0;     ///< Of a named one: as TextureDescription::block.
   /// Named materials known at this statement, by parameters of type string that a mix material uses:
   /// (name, index) of every named material in scope whose name occurs as a string value here. 0, the default matte,
   /// stands in for those that a mix names and that are not there.
@@ -92,6 +94,13 @@ struct InstanceDescription {
   int object = 0;
   int transform = 0;
   SourcePos where;
+};
+
+/// A CoordinateSystem, which is known until the world ends.
+struct CoordinateSystemDescription {
+  std::string name;
+  SourcePos where;
+  bool used = false;  ///< Some CoordSysTransform goes back to it.
 };
 
 /// A statement that made a matrix which cannot be inverted.
@@ -138,6 +147,7 @@ struct SceneDescription {
   std::vector<UnreadFile> unread_files;
   std::vector<MediumDescription> media;  ///< MakeNamedMedium: parsed, not simulated.
   std::vector<MediumUse> media_uses;
+  std::vector<CoordinateSystemDescription> coordinate_systems;
   /// The statement of the first medium that the scene puts somewhere; nowhere when there is none.
   SourcePos first_medium() const {
     for (const MediumUse& use : media_uses)

@@ -304,12 +304,16 @@ std::string Sources::excerpt(SourcePos where, bool colour) const {
 }
 
 std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour) const {
-  const bool error = diagnostic.severity == Severity::Error;
+  struct Look {
+    const char *word, *colour;
+  };
+  constexpr Look kLooks[] = {{"warning:", "\033[1;35m"}, {"error:", "\033[1;31m"}, {"note:", "\033[1;36m"}};
+  const Look& look = kLooks[static_cast<size_t>(diagnostic.severity)];
   const bool located = find(diagnostic.where.file) != nullptr;
   std::string out;
   if (located) out += colour ? "\033[1m" + location(diagnostic.where) + ":\033[0m " : location(diagnostic.where) + ": ";
-  if (colour) out += error ? "\033[1;31m" : "\033[1;35m";
-  out += error ? "error:" : "warning:";
+  if (colour) out += look.colour;
+  out += look.word;
   if (colour) out += "\033[0m";
   out.append(" ").append(printable(diagnostic.message)).append("\n");
   if (located) out += excerpt(diagnostic.where, colour);

@@ -127,20 +127,36 @@ constexpr ForeignDirective kForeignDirectives[] = {
 };
 
 /// Plugins that pbrt-v4 alone has, by the statements that name them.
+struct ForeignPlugin {
+  std::string_view name, instead;  ///< "" where nothing of pbrt-v3 is like it.
+};
 struct ForeignPlugins {
   std::string_view directive;
-  std::array<std::string_view, 9> names;
+  std::array<ForeignPlugin, 9> plugins;
 };
 constexpr ForeignPlugins kForeignPlugins[] = {
-    {"Film", {"rgb", "gbuffer", "spectral"}},
-    {"Camera", {"spherical"}},
-    {"Sampler", {"zsobol", "paddedsobol", "independent", "pmj02bn"}},
-    {"Integrator", {"simplepath", "simplevolpath", "lightpath", "randomwalk", "function"}},
+    {"Film", {{{"rgb", "image"}, {"gbuffer", "image"}, {"spectral", "image"}}}},
+    {"Camera", {{{"spherical", "environment"}}}},
+    {"Sampler",
+     {{{"zsobol", "sobol"}, {"paddedsobol", "sobol"}, {"independent", "random"}, {"pmj02bn", "02sequence"}}}},
+    {"Integrator",
+     {{{"simplepath", "path"},
+       {"simplevolpath", "path"},
+       {"lightpath", "path"},
+       {"randomwalk", "path"},
+       {"function", ""}}}},
     {"Material",
-     {"diffuse", "conductor", "dielectric", "thindielectric", "coateddiffuse", "coatedconductor", "diffusetransmission",
-      "interface", "measured"}},
-    {"MakeNamedMedium", {"uniformgrid", "rgbgrid", "cloud", "nanovdb"}},
-    {"Shape", {"bilinearmesh"}},
+     {{{"diffuse", "matte"},
+       {"conductor", "metal"},
+       {"dielectric", "glass"},
+       {"thindielectric", "glass"},
+       {"coateddiffuse", "plastic"},
+       {"coatedconductor", "metal"},
+       {"diffusetransmission", "translucent"},
+       {"interface", "none"},
+       {"measured", ""}}}},
+    {"MakeNamedMedium", {{{"uniformgrid", ""}, {"rgbgrid", ""}, {"cloud", ""}, {"nanovdb", ""}}}},
+    {"Shape", {{{"bilinearmesh", "trianglemesh"}}}},
 };
 
 /// The plugin that a statement asks for.
@@ -158,10 +174,13 @@ void note_foreign_plugin(const Statement& s, Reporter& reporter) {
   for (const ForeignPlugins& foreign : kForeignPlugins) {
     if (foreign.directive != directive) continue;
     const std::string plugin = plugin_of(s);
-    if (!plugin.empty() && std::find(foreign.names.begin(), foreign.names.end(), plugin) != foreign.names.end())
-      // At the name, where whoever binds the plugin says that it is unknown.
-      reporter.foreign(s.names_at.back(), "pbrt-v4", Severity::Warning,
-                       "pbrt-v3 has no " + std::string(directive) + " " + in_quotes(plugin));
+    const auto found = std::find_if(foreign.plugins.begin(), foreign.plugins.end(),
+                                    [&](const ForeignPlugin& p) { return !plugin.empty() && p.name == plugin; });
+    if (found == foreign.plugins.end()) continue;
+    // At the name, where whoever binds the plugin says that it is unknown.
+    reporter.foreign(s.names_at.back(), "pbrt-v4", Severity::Warning,
+                     "pbrt-v3 has no " + std::string(directive) + " " + in_quotes(plugin),
+                     found->instead.empty() ? "" : "in pbrt-v3 " + in_quotes(found->instead) + " is like it");
   }
 }
 

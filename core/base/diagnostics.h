@@ -16,7 +16,8 @@ struct SourcePos {
   bool known() const { return file != kNoFile; }
 };
 
-enum class Severity : uint8_t { Warning, Error };
+/// A note is information that may well be meant; only `whit check` has such.
+enum class Severity : uint8_t { Warning, Error, Note };
 
 /// Which exit code an error leads to: the scene is wrong (3), a file could not be read or written (4), or what was asked
 /// for, apart from the scene, cannot be had (2).
@@ -47,8 +48,10 @@ struct Diagnostic {
   SourcePos other{};     ///< A second place that it is about, where there is one.
   /// A mistake that pbrt-v3 renders past, and so do we with this warning; `whit check` calls it an error.
   bool excused = false;
-  Slip slip{};         ///< What `whit check --fix` and editors can correct.
-  std::string name{};  ///< Of a finding that can be silenced: "unused-texture"; "" for what is plainly wrong.
+  Slip slip{};  ///< What `whit check --fix` and editors can correct.
+  /// Of a finding that can be silenced: "unused-texture". "" for what has no name of its own; `whit check` then gives one
+  /// by the kind of the diagnostic.
+  std::string name{};
 };
 
 /// An ordered collection of diagnostics. Not thread-safe: one per stage, merged by append().
@@ -60,8 +63,10 @@ class Diagnostics {
   void file_error(SourcePos where, std::string message, Remedy remedy = {}) {
     put({Severity::Error, ErrorClass::File, where, std::move(message)}, std::move(remedy));
   }
-  void warning(SourcePos where, std::string message, Remedy remedy = {}) {
-    put({Severity::Warning, ErrorClass::Scene, where, std::move(message)}, std::move(remedy));
+  void warning(SourcePos where, std::string message, Remedy remedy = {}, const char* name = "") {
+    Diagnostic d{Severity::Warning, ErrorClass::Scene, where, std::move(message)};
+    d.name = name;
+    put(std::move(d), std::move(remedy));
   }
   /// A warning where a picture is made, an error where a file is checked: see Diagnostic::excused.
   void excused(SourcePos where, std::string message, Remedy remedy = {}) {

@@ -105,6 +105,11 @@ bool check_number(const Parameter& p, const BindContext& ctx, const Range& range
   if (!std::isfinite(used))
     return fail(ctx, ctx.at(p, i), called(p, ctx) + " is not a finite number: " + number_text(v));
   if (used >= range.min && used <= range.max) return true;
+  if (range.excused) {
+    ctx.diagnostics->excused(ctx.at(p, i), called(p, ctx) + " must be " + range_text(range) + ", not " + number_text(v),
+                             "it is rendered as pbrt-v3 does");
+    return true;
+  }
   return fail(ctx, ctx.at(p, i), called(p, ctx) + " must be " + range_text(range) + ", not " + number_text(v));
 }
 

@@ -26,15 +26,19 @@ namespace whit {
 enum class Unit : uint8_t { None, Degrees, Length, Radiance, Intensity, Irradiance, Seconds, Millimetres, Pixels };
 const char* unit_name(Unit unit);  ///< "degrees", "scene length", ...; "" for None.
 
-/// Closed range of allowed numbers. Values outside are errors at the value's own place.
+/// Closed range of allowed numbers. Values outside are errors at the value's own place, or where `excused` mistakes that
+/// are rendered past as pbrt-v3 does (Diagnostic::excused).
 struct Range {
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
+  bool excused = false;
 };
 inline constexpr Range kAny{};
 inline constexpr Range kNonNegative{0.0};
 inline constexpr Range kPositive{std::numeric_limits<double>::min()};
 inline constexpr Range kUnit{0.0, 1.0};
+/// Of roughness: pbrt-v3 takes a negative one as the smoothest that there is, or its square.
+inline constexpr Range kRoughness{0.0, std::numeric_limits<double>::infinity(), true};
 std::string range_text(const Range& range);  ///< "above 0", "between 0 and 1", ...
 
 /// A point or vector parameter in double precision, as the file gives it.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,13 @@ struct PrepareContext {
   Elapsed* reading_pictures = nullptr;
 };
 
+/// A parameter that says nothing beside the others, as they are bound.
+struct Ineffective {
+  const char* parameter;
+  const char* why;               ///< "both roughnesses are 0, so the surface is smooth".
+  const char* unless = nullptr;  ///< Where this one is given too, the author knows.
+};
+
 /// Base of all plugins. Life: constructed with defaults, parameters bound, check(), effects(), and, when the
 /// plan keeps it, read() and prepare().
 class Plugin {
@@ -44,6 +52,9 @@ class Plugin {
 
   /// The effects the bound parameters call for, but for those of the textures they are, which have their own.
   virtual EffectSet effects() const { return {}; }
+
+  /// The parameters that would have no effect, were they given: those that are, `whit check` finds. After binding.
+  virtual std::vector<Ineffective> ineffective() const { return {}; }
 
   /// Of a texture: what it asks of meshes, without the textures that it is made of. After binding.
   virtual MeshAttributes attributes_read() const { return {}; }

@@ -49,7 +49,7 @@ void warn_unknown(const PluginInfo& info, const Parameter& p, const BindContext&
     if (other) add_names(other);
   const Remedy hint = suggestion(p.name, names);
   ctx.diagnostics->warning(p.where, info.name + " has no parameter \"" + p.name + '"',
-                           hint.slip.known() ? hint : "it is ignored");
+                           hint.slip.known() ? hint : "it is ignored", "unknown-parameter");
 }
 
 void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parameter& p, const BindContext& ctx) {
@@ -58,7 +58,7 @@ void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parame
   ctx.diagnostics->warning(p.where,
                            std::string("parameter \"") + p.name + "\" of " + info.name + " is of type " +
                                join_types(spec.accepts) + ", not " + param_type_name(p.type),
-                           used);
+                           used, "wrong-type");
 }
 
 void warn_empty(const PluginInfo& info, const Parameter& p, const BindContext& ctx) {

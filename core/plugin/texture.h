@@ -26,6 +26,13 @@ struct ValueLanes<RGB> {
   static void set(const type& lanes, int i, const RGB& v) { lanes.set(i, v); }
 };
 
+/// How finely a texture that is a picture is looked up.
+struct TexelUse {
+  int width = 0, height = 0;  ///< Of the picture.
+  /// At each point, how many of its texels the shorter and the longer side of the footprint cover.
+  float *least = nullptr, *most = nullptr;
+};
+
 /// A texture of floats or of linear colours (RGB).
 template <class T>
 class Texture : public Plugin {
@@ -45,6 +52,9 @@ class Texture : public Plugin {
 
   /// The value when it is the same everywhere, so that it folds away; nullopt otherwise. After binding.
   virtual std::optional<T> constant() const { return std::nullopt; }
+
+  /// Of a texture that is a picture, after prepare(): what the points of a batch with footprints use of it.
+  virtual std::optional<TexelUse> texels_used(const ShadingBatch& /*s*/) const { return std::nullopt; }
 
   std::vector<const Plugin*> textures_read() const final {
     std::vector<const Plugin*> textures;

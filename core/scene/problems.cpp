@@ -120,17 +120,19 @@ Diagnostics weigh_problems(const BoundScene& scene, const EffectPlan& plan) {
 Diagnostics find_surprises(const SceneDescription& description, const EffectPlan& plan) {
   Diagnostics all;
   if (description.has_media()) {
-    all.warning(description.first_medium(), "participating media are not simulated", "the picture is made without");
+    all.warning(description.first_medium(), "participating media are not simulated", "the picture is made without",
+                "not-simulated");
   }
   for (const Ignored& ignored : plan.ignored) {
-    if (!ignored.instead.empty()) all.warning(ignored.where, ignored.what + " is not simulated", ignored.instead);
+    if (!ignored.instead.empty())
+      all.warning(ignored.where, ignored.what + " is not simulated", ignored.instead, "not-simulated");
   }
   const EffectSet lights{Effect::AreaLights, Effect::EnvironmentLights, Effect::DeltaLights};
   // An integrator that knows of no lights does without.
   const bool lit_otherwise = (lights - (plan.off - plan.off_by_hand)).empty();
   if ((plan.called_for & lights).empty() && !lit_otherwise) {
     all.warning(description.world_begin, "the scene has no lights, so the picture is black",
-                "add a LightSource, or an AreaLightSource before a shape that stands in the world");
+                "add a LightSource, or an AreaLightSource before a shape that stands in the world", "no-lights");
   }
   return all;
 }

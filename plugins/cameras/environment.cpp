@@ -11,6 +11,10 @@ namespace {
 class Environment final : public ScreenCamera {
  public:
   bool needs_lens() const override { return false; }
+  std::vector<Ineffective> ineffective() const override {
+    constexpr const char* why = "the environment camera sees all directions, without a lens";
+    return {{"frameaspectratio", why}, {"screenwindow", why}, {"lensradius", why}, {"focaldistance", why}};
+  }
 
   void generate(const CameraRays& rays) const override {
     const Vec3Lanes o = rays.o, d = rays.d;

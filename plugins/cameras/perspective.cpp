@@ -20,6 +20,11 @@ class Perspective final : public ScreenCamera {
     screen_ = screen(std::tan(degrees * detail::kPiD / 180));
     return true;
   }
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all = ScreenCamera::ineffective();
+    if (half_fov > 0) all.push_back({"fov", "\"halffov\" goes before it"});
+    return all;
+  }
   std::optional<Mat4d> to_ndc() const override { return projection(screen_, false); }
 
   void generate(const CameraRays& rays) const override {

@@ -19,6 +19,13 @@ class Diffuse final : public AreaLight {
   bool lights() const override { return sampled; }
   bool two_sided() const override { return twosided; }
   int sample_count() const override { return samples != 1 ? samples : nsamples; }
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    constexpr const char* why = "\"lights\" is false: other surfaces do not look for its light";
+    if (!sampled) all = {{"samples", why}, {"nsamples", why}};
+    else if (samples != 1) all = {{"nsamples", "\"samples\" goes before it"}};
+    return all;
+  }
 };
 
 const Register<Diffuse> diffuse{

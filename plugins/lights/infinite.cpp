@@ -17,6 +17,10 @@ class InfiniteLight final : public EnvironmentLight {
 
   int sample_count() const override { return samples != 1 ? samples : nsamples; }
   bool is_black() const override { return whit::is_black(L * scale); }
+  std::vector<Ineffective> ineffective() const override {
+    if (samples == 1) return {};
+    return {{"nsamples", "\"samples\" goes before it"}};
+  }
 
   bool prepare(const PrepareContext& ctx) override {
     std::unique_ptr<const DirectionalRadiance> radiance;

@@ -61,6 +61,11 @@ class Skybox final : public EnvironmentLight {
 
   bool is_black() const override { return whit::is_black(L * scale); }
 
+  std::vector<Ineffective> ineffective() const override {
+    if (radius > 0) return {};
+    return {{"center", "without a \"radius\" the sky is infinitely far away", "radius"}};
+  }
+
   bool prepare(const PrepareContext& ctx) override {
     std::unique_ptr<const DirectionalRadiance> radiance;
     if (map.empty()) {

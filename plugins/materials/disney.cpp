@@ -40,6 +40,23 @@ struct Disney : Material {
     if (thin) add(LobeType::LambertTransmission, scaled(s, at.colour, at.difftrans), out);
   }
 
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    if (!may_be_diffuse()) {
+      constexpr const char* why = "\"metallic\" or \"spectrans\" is 1, so nothing is diffuse";
+      for (const char* name : {"sheen", "sheentint", "scatterdistance", "flatness"}) all.push_back({name, why});
+    } else {
+      if (!may_be_positive(sheen)) all.push_back({"sheentint", "there is no \"sheen\"", "sheen"});
+      if (thin) all.push_back({"scatterdistance", "the surface is \"thin\""});
+      else all.push_back({"flatness", "the surface is not \"thin\"", "thin"});
+    }
+    if (!may_be_positive(clearcoat)) all.push_back({"clearcoatgloss", "there is no \"clearcoat\"", "clearcoat"});
+    if (!thin) all.push_back({"difftrans", "the surface is not \"thin\"", "thin"});
+    if (metallic.is_constant() && metallic.value() == 1)
+      all.push_back({"speculartint", "the surface is all metal: \"metallic\" is 1"});
+    return all;
+  }
+
  private:
   static bool may_be_positive(const Tex<float>& t) { return !t.is_constant() || t.value() > 0; }
   /// Of no points nothing is known.
@@ -196,7 +213,8 @@ const Register<Disney> disney{
     param(&Disney::color, "color", RGB(0.5f), Unit::None, "Colour of the base, of metal and of what passes through."),
     param(&Disney::metallic, "metallic", 0.0f, Unit::None, "From a dielectric, 0, to a metal, 1."),
     param(&Disney::eta, "eta", 1.5f, Unit::None, "Index of refraction inside over that outside.", kPositive),
-    param(&Disney::roughness, "roughness", 0.5f, Unit::None, "Roughness in 0..1; the facets' alpha is its square."),
+    param(&Disney::roughness, "roughness", 0.5f, Unit::None, "Roughness in 0..1; the facets' alpha is its square.",
+          kRoughness),
     param(&Disney::speculartint, "speculartint", 0.0f, Unit::None,
           "How much of the base's hue the gloss takes, 0 to 1."),
     param(&Disney::anisotropic, "anisotropic", 0.0f, Unit::None, "Stretches the gloss along u, up to tenfold at 1."),

@@ -17,6 +17,12 @@ struct Glass : DielectricSurface {
   void lobes(const ShadingBatch& s, LobeSet& out) const override {
     if (!is_nothing()) add_surface(s, indices(relative_index(), s), out);
   }
+
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all = DielectricSurface::ineffective();
+    if (&relative_index() == &eta) all.push_back({"index", "\"eta\" goes before it"});
+    return all;
+  }
 };
 
 const Register<Glass> glass{
@@ -24,8 +30,8 @@ const Register<Glass> glass{
     "A smooth or rough dielectric: reflects and refracts by Fresnel's equations.",
     param(&Glass::Kr, "Kr", RGB(1.0f), Unit::None, "Scale of the reflection."),
     param(&Glass::Kt, "Kt", RGB(1.0f), Unit::None, "Scale of the transmission."),
-    param(&Glass::uroughness, "uroughness", 0.0f, Unit::None, "Roughness along u; 0 in both is smooth."),
-    param(&Glass::vroughness, "vroughness", 0.0f, Unit::None, "Roughness along v."),
+    param(&Glass::uroughness, "uroughness", 0.0f, Unit::None, "Roughness along u; 0 in both is smooth.", kRoughness),
+    param(&Glass::vroughness, "vroughness", 0.0f, Unit::None, "Roughness along v.", kRoughness),
     param(&Glass::index, "index", 1.5f, Unit::None, "Index of refraction inside over that outside.", kPositive),
     param(&Glass::eta, "eta", Unit::None, "The same as index, which it overrides.", kPositive),
     param(&Glass::remaproughness, "remaproughness", true, Unit::None,

@@ -19,6 +19,11 @@ struct Matte : Material {
     out.add(lobe);
   }
 
+  std::vector<Ineffective> ineffective() const override {
+    if (!is_black(Kd)) return {};
+    return {{"sigma", "\"Kd\" is black"}};
+  }
+
  private:
   void set_oren_nayar(const ShadingBatch& s, Lobe& lobe) const {
     const float* const degrees = sigma(s);

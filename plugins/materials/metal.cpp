@@ -31,6 +31,11 @@ struct Metal : Material {
     set_alphas(lobe, along_u(), along_v(), remaproughness, s);
     out.add(lobe);
   }
+
+  std::vector<Ineffective> ineffective() const override {
+    if (!uroughness || !vroughness) return {};
+    return {{"roughness", "\"uroughness\" and \"vroughness\" go before it"}};
+  }
 };
 
 /// n and k of copper at photon energies of 1.45 eV, 1.50 eV and so on to 3.45 eV: all visible light.
@@ -65,9 +70,10 @@ const Register<Metal> metal{
     "A rough metal.",
     param(&Metal::eta, "eta", copper(&Index::n), Unit::None, "Index of refraction; copper's unless given."),
     param(&Metal::k, "k", copper(&Index::k), Unit::None, "Absorption, the imaginary index; copper's unless given."),
-    param(&Metal::roughness, "roughness", 0.01f, Unit::None, "Roughness in both directions; see remaproughness."),
-    param(&Metal::uroughness, "uroughness", Unit::None, "Roughness along u, instead of roughness."),
-    param(&Metal::vroughness, "vroughness", Unit::None, "Roughness along v, instead of roughness."),
+    param(&Metal::roughness, "roughness", 0.01f, Unit::None, "Roughness in both directions; see remaproughness.",
+          kRoughness),
+    param(&Metal::uroughness, "uroughness", Unit::None, "Roughness along u, instead of roughness.", kRoughness),
+    param(&Metal::vroughness, "vroughness", Unit::None, "Roughness along v, instead of roughness.", kRoughness),
     param(&Metal::remaproughness, "remaproughness", true, Unit::None,
           "Roughness is in 0..1 and mapped to the microfacets' alpha; otherwise it is alpha."),
     bumpmap_param()};

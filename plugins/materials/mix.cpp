@@ -28,6 +28,14 @@ struct Mix : Material {
     out.eta = eta;
   }
 
+  std::vector<Ineffective> ineffective() const override {
+    const RGB a = amount.value();
+    if (!amount.is_constant()) return {};
+    if (a.x >= 1 && a.y >= 1 && a.z >= 1) return {{"namedmaterial2", "the \"amount\" of the first material is 1"}};
+    if (is_black(amount)) return {{"namedmaterial1", "its \"amount\" is 0"}};
+    return {};
+  }
+
  private:
   /// Adds a material's lobes with their weights scaled. The weights are not scaled in place: lobes may share them.
   static void add_share(const Material& member, const RGBLanes& share, const ShadingBatch& s, LobeSet& out) {

@@ -29,6 +29,11 @@ struct Plastic : Material {
     gloss.eta = filled(s, kCoatEta);
     out.add(gloss);
   }
+
+  std::vector<Ineffective> ineffective() const override {
+    if (!is_black(Ks)) return {};
+    return {{"roughness", "\"Ks\" is black"}, {"remaproughness", "\"Ks\" is black"}};
+  }
 };
 
 const Register<Plastic> plastic{
@@ -36,7 +41,7 @@ const Register<Plastic> plastic{
     "A diffuse base with a glossy coat.",
     param(&Plastic::Kd, "Kd", RGB(0.25f), Unit::None, "Reflectance of the diffuse base."),
     param(&Plastic::Ks, "Ks", RGB(0.25f), Unit::None, "Scale of the glossy reflection."),
-    param(&Plastic::roughness, "roughness", 0.1f, Unit::None, "Roughness of the coat; see remaproughness."),
+    param(&Plastic::roughness, "roughness", 0.1f, Unit::None, "Roughness of the coat; see remaproughness.", kRoughness),
     param(&Plastic::remaproughness, "remaproughness", true, Unit::None,
           "Roughness is in 0..1 and mapped to the microfacets' alpha; otherwise it is alpha."),
     bumpmap_param()};

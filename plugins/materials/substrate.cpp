@@ -26,6 +26,12 @@ struct Substrate : Material {
     set_alphas(lobe, uroughness, vroughness, remaproughness, s);
     out.add(lobe);
   }
+
+  std::vector<Ineffective> ineffective() const override {
+    constexpr const char* why = "\"Kd\" and \"Ks\" are black";
+    if (!is_nothing()) return {};
+    return {{"uroughness", why}, {"vroughness", why}, {"remaproughness", why}};
+  }
 };
 
 const Register<Substrate> substrate{
@@ -33,8 +39,8 @@ const Register<Substrate> substrate{
     "A diffuse base under a glossy coat.",
     param(&Substrate::Kd, "Kd", RGB(0.5f), Unit::None, "Reflectance of the diffuse base."),
     param(&Substrate::Ks, "Ks", RGB(0.5f), Unit::None, "Reflectance of the coat at normal incidence."),
-    param(&Substrate::uroughness, "uroughness", 0.1f, Unit::None, "Roughness of the coat along u."),
-    param(&Substrate::vroughness, "vroughness", 0.1f, Unit::None, "Roughness of the coat along v."),
+    param(&Substrate::uroughness, "uroughness", 0.1f, Unit::None, "Roughness of the coat along u.", kRoughness),
+    param(&Substrate::vroughness, "vroughness", 0.1f, Unit::None, "Roughness of the coat along v.", kRoughness),
     param(&Substrate::remaproughness, "remaproughness", true, Unit::None,
           "Roughness is in 0..1 and mapped to the microfacets' alpha; otherwise it is alpha."),
     bumpmap_param()};

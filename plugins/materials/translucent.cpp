@@ -28,6 +28,21 @@ struct Translucent : Material {
     add(s, lobe, LobeType::MicrofacetTransmission, Ks, transmit, out);
   }
 
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    if (is_nothing()) {
+      constexpr const char* why = "\"reflect\" and \"transmit\" are black";
+      all = {{"Kd", why}, {"Ks", why}, {"roughness", why}, {"remaproughness", why}};
+    } else if (is_black(Ks)) {
+      all = {{"roughness", "\"Ks\" is black"}, {"remaproughness", "\"Ks\" is black"}};
+    }
+    if (is_black(Kd) && is_black(Ks)) {
+      constexpr const char* why = "\"Kd\" and \"Ks\" are black";
+      all.insert(all.end(), {{"reflect", why}, {"transmit", why}});
+    }
+    return all;
+  }
+
  private:
   static void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour, const Tex<RGB>& share,
                   LobeSet& out) {
@@ -45,7 +60,8 @@ const Register<Translucent> translucent{
     param(&Translucent::Ks, "Ks", RGB(0.25f), Unit::None, "Scale of the glossy scattering."),
     param(&Translucent::reflect, "reflect", RGB(0.5f), Unit::None, "Share that is reflected."),
     param(&Translucent::transmit, "transmit", RGB(0.5f), Unit::None, "Share that is transmitted."),
-    param(&Translucent::roughness, "roughness", 0.1f, Unit::None, "Roughness of the glossy part; see remaproughness."),
+    param(&Translucent::roughness, "roughness", 0.1f, Unit::None, "Roughness of the glossy part; see remaproughness.",
+          kRoughness),
     param(&Translucent::remaproughness, "remaproughness", true, Unit::None,
           "Roughness is in 0..1 and mapped to the microfacets' alpha; otherwise it is alpha."),
     bumpmap_param()};

@@ -1,7 +1,9 @@
 // The union of the simple materials: diffuse, glossy, mirror and refraction, under an opacity that lets rays pass
 // straight on. The glossy part is Torrance-Sparrow with Trowbridge-Reitz facets. Shadow rays do not see the opacity,
 // as in pbrt-v3.
+#include <initializer_list>
 #include <optional>
+#include <vector>
 
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
@@ -43,6 +45,26 @@ struct Uber : Material {
     add(s, lobe, LobeType::SpecularTransmission, Kt, solid, out);
   }
 
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    const auto add_all = [&all](std::initializer_list<const char*> names, const char* why) {
+      for (const char* name : names) all.push_back({name, why});
+    };
+    if (is_black(opacity)) {
+      add_all({"Kd", "Ks", "Kr", "Kt", "roughness", "uroughness", "vroughness", "remaproughness", "index", "eta"},
+              "\"opacity\" is black, so there is no surface");
+      return all;
+    }
+    if (is_black(Ks)) {
+      add_all({"roughness", "uroughness", "vroughness", "remaproughness"}, "\"Ks\" is black");
+    } else if (uroughness) {
+      add_all({"roughness"}, "\"uroughness\" goes before it");
+    }
+    if (!is_shiny()) add_all({"index", "eta"}, "\"Ks\", \"Kr\" and \"Kt\" are black");
+    else if (eta) add_all({"index"}, "\"eta\" goes before it");
+    return all;
+  }
+
  private:
   static void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour, const RGBLanes& solid,
                   LobeSet& out) {
@@ -61,9 +83,10 @@ const Register<Uber> uber{
     param(&Uber::Kr, "Kr", RGB(0.0f), Unit::None, "Scale of the mirror reflection."),
     param(&Uber::Kt, "Kt", RGB(0.0f), Unit::None, "Scale of the refraction."),
     param(&Uber::opacity, "opacity", RGB(1.0f), Unit::None, "Share of all this; the rest of a ray passes straight on."),
-    param(&Uber::roughness, "roughness", 0.1f, Unit::None, "Roughness of the glossy part; see remaproughness."),
-    param(&Uber::uroughness, "uroughness", Unit::None, "Roughness along u, instead of roughness."),
-    param(&Uber::vroughness, "vroughness", Unit::None, "Roughness along v, instead of that along u."),
+    param(&Uber::roughness, "roughness", 0.1f, Unit::None, "Roughness of the glossy part; see remaproughness.",
+          kRoughness),
+    param(&Uber::uroughness, "uroughness", Unit::None, "Roughness along u, instead of roughness.", kRoughness),
+    param(&Uber::vroughness, "vroughness", Unit::None, "Roughness along v, instead of that along u.", kRoughness),
     param(&Uber::index, "index", 1.5f, Unit::None, "Index of refraction inside over that outside.", kPositive),
     param(&Uber::eta, "eta", Unit::None, "The same as index, which it overrides.", kPositive),
     param(&Uber::remaproughness, "remaproughness", true, Unit::None,

@@ -27,6 +27,15 @@ void add(const ShadingBatch& s, Lobe lobe, LobeType type, const Tex<RGB>& colour
 
 bool DielectricSurface::is_nothing() const { return is_black(Kr) && is_black(Kt); }
 
+std::vector<Ineffective> DielectricSurface::ineffective() const {
+  if (is_nothing()) {
+    constexpr const char* why = "\"Kr\" and \"Kt\" are black";
+    return {{"uroughness", why}, {"vroughness", why}, {"remaproughness", why}, {"index", why}, {"eta", why}};
+  }
+  if (!may_be_rough()) return {{"remaproughness", "the surface is smooth: both roughnesses are 0"}};
+  return {};
+}
+
 void DielectricSurface::add_surface(const ShadingBatch& s, const float* eta, LobeSet& out) const {
   Lobe lobe;
   lobe.fresnel = FresnelType::Dielectric;

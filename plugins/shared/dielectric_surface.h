@@ -1,6 +1,8 @@
 // The surface lobes of a dielectric boundary, smooth or rough: what glass is, and what covers a scattering inside.
 #pragma once
 
+#include <vector>
+
 #include "core/plugin/material.h"
 
 namespace whit {
@@ -12,6 +14,8 @@ class DielectricSurface : public Material {
   Tex<RGB> Kr, Kt;
   Tex<float> uroughness, vroughness;
   bool remaproughness = true;
+
+  std::vector<Ineffective> ineffective() const override;
 
  protected:
   /// Whether it has no lobes at all.

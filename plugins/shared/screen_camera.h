@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/plugin/camera.h"
 
@@ -35,6 +36,12 @@ class ScreenCamera : public Camera {
     }
   }
   bool needs_lens() const override { return lens_radius > 0; }
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    if (screen_window.given) all.push_back({"frameaspectratio", "\"screenwindow\" goes before it"});
+    if (!needs_lens()) all.push_back({"focaldistance", "without a \"lensradius\" everything is sharp", "lensradius"});
+    return all;
+  }
 
  protected:
   /// Screen coordinates of film positions: screen = center + step * (film - middle), y up (step.y is negative). From

@@ -4,6 +4,10 @@
 // double precision and rounded once, so that a scene far from the origin keeps its textures.
 #pragma once
 
+#include <initializer_list>
+#include <string>
+#include <vector>
+
 #include "core/plugin/registry.h"
 #include "core/plugin/texture.h"
 
@@ -56,6 +60,20 @@ class Texture2D : public Texture<T> {
     if (uvmatrix.given && uvmatrix.size() != 6)
       diagnostics.error(uvmatrix.where, "\"uvmatrix\" has " + std::to_string(uvmatrix.size()) + " numbers",
                         "it takes 6: s = m0 u + m1 v + m2, t = m3 u + m4 v + m5");
+  }
+
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all;
+    const auto add = [&all](std::initializer_list<const char*> names, const char* why) {
+      for (const char* name : names) all.push_back({name, why});
+    };
+    const int kind = mapping.index;
+    if (kind != TextureMapping2D::Uv)
+      add({"uscale", "vscale", "uvmatrix", "uvset"}, "the \"mapping\" is not by (u, v)");
+    if (kind == TextureMapping2D::Spherical || kind == TextureMapping2D::Cylindrical)
+      add({"udelta", "vdelta"}, "the \"mapping\" takes no shift");
+    if (kind != TextureMapping2D::Planar) add({"v1", "v2"}, "the \"mapping\" is not planar");
+    return all;
   }
 
   MeshAttributes attributes_read() const override { return {.uvs1 = asks_second_uvs(), .colors = false}; }

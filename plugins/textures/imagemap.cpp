@@ -1,5 +1,9 @@
 // A picture as a texture, filtered over the footprint (EWA or trilinear) with pbrt-v3's filters, or not filtered. The
 // file is decoded when a ray first meets it.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "core/image/image.h"
 #include "core/image/signature.h"
 #include "core/image/texture_store.h"
@@ -24,6 +28,29 @@ class ImageMap : public Texture2D<T> {
 
   EffectSet effects() const override {
     return kind_of_filter() == TextureFilter::Point ? EffectSet{} : Texture2D<T>::effects();
+  }
+
+  std::vector<Ineffective> ineffective() const override {
+    std::vector<Ineffective> all = Texture2D<T>::ineffective();
+    if (wrapu.index > 0 && wrapv.index > 0) all.push_back({"wrap", "\"wrapu\" and \"wrapv\" go before it"});
+    if (kind_of_filter() != TextureFilter::Ewa) all.push_back({"maxanisotropy", "the filter is not \"ewa\""});
+    if (static_cast<TextureFilter>(filter.index) == TextureFilter::Point)
+      all.push_back({"trilinear", "the \"filter\" is \"point\""});
+    return all;
+  }
+
+  std::optional<TexelUse> texels_used(const ShadingBatch& s) const override {
+    if (!image_ || !s.has_footprint()) return std::nullopt;
+    const Result<ImageInfo> info = probe_image(bytes_ ? PictureFile(bytes_) : PictureFile(filename.path));
+    if (!info.ok()) return std::nullopt;
+    const MappedPoints m = this->map_.map(s);
+    TexelUse use{info.value.width, info.value.height, s.arena->floats(s.n), s.arena->floats(s.n)};
+    const auto w = static_cast<float>(use.width), h = static_cast<float>(use.height);
+    for (int i = 0; i < s.n; ++i) {
+      const float x = std::hypot(m.dsdx[i] * w, m.dtdx[i] * h), y = std::hypot(m.dsdy[i] * w, m.dtdy[i] * h);
+      use.least[i] = std::min(x, y), use.most[i] = std::max(x, y);
+    }
+    return use;
   }
 
   void attach(std::shared_ptr<const Attachment> picture) override {
