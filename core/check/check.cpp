@@ -8,6 +8,7 @@
 #include "core/check/allowances.h"
 #include "core/check/findings.h"
 #include "core/check/names.h"
+#include "core/session/models.h"
 #include "core/session/output.h"
 
 namespace whit {
@@ -49,15 +50,16 @@ bool is_wanted(const Diagnostic& d, const CheckOptions& options) {
   return !kind || kind->by_default || names(options.asked_for);
 }
 
-/// Findings at places of which something worse has been said are left out: that explains them.
-void add_unexplained(const Diagnostics& findings, Diagnostics& all) {
+/// Findings at places of which something worse has been said are left out: that explains them. So are those in text that
+/// stands for a model, which nobody has written.
+void add_unexplained(const Diagnostics& findings, const Sources& sources, Diagnostics& all) {
   using Place = std::pair<uint32_t, uint64_t>;
   std::vector<Place> said;
   for (const Diagnostic& d : all.all()) said.emplace_back(d.where.file, d.where.offset);
   std::sort(said.begin(), said.end());
   for (const Diagnostic& d : findings.all()) {
     const bool explained = std::binary_search(said.begin(), said.end(), Place(d.where.file, d.where.offset));
-    if (!explained || !d.where.known()) all.add(d);
+    if ((!explained || !d.where.known()) && !is_model_text(sources.name(d.where.file))) all.add(d);
   }
 }
 
@@ -77,7 +79,7 @@ Diagnostics check_file(const ParsedFile& file, const std::string& path, const Ch
     if (sound) check_lights(world, sink), check_instances(world, sink);
     return options.build ? check_built(std::move(planned), path, sound, findings) : Diagnostics();
   });
-  add_unexplained(findings, all);
+  add_unexplained(findings, *file.sources, all);
 
   const Allowances allowances(*file.sources);
   all.append(allowances.said());

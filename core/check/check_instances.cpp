@@ -1,7 +1,6 @@
 // Objects that are placed flat or mirrored.
 
-#include <cmath>
-#include <limits>
+#include <algorithm>
 #include <string>
 
 #include "core/check/findings.h"
@@ -9,13 +8,16 @@
 namespace whit {
 namespace {
 
-/// The determinant of what a matrix does to directions, over the product of the lengths of its rows: 1 or -1 for a
-/// rotation or mirroring, 0 for what is flat, whatever the scale.
+/// The determinant of what a matrix does to directions, over the cube of what it makes of the longest axis: 1 or -1 for a
+/// rotation or mirroring of any scale, near 0 for what is flat.
 double shape_of(const Mat4d& m) {
   const Vec3d x(m[0][0], m[0][1], m[0][2]), y(m[1][0], m[1][1], m[1][2]), z(m[2][0], m[2][1], m[2][2]);
-  const double size = x.length() * y.length() * z.length();
-  return size > 0 ? x.cross(y).dot(z) / size : 0.0;
+  const double size = std::max({x.length(), y.length(), z.length()});
+  return size > 0 ? (x / size).cross(y / size).dot(z / size) : 0.0;
 }
+
+/// Flatter than that is thinner than the roundings of what is in the plane.
+constexpr double kFlat = 1e-8;
 
 }  // namespace
 
@@ -30,9 +32,9 @@ void check_instances(const CheckedWorld& world, Findings& found) {
       last_seen = instance.transform;
       last = shape_of(d.transforms[static_cast<size_t>(last_seen)].start);
     }
-    if (last > 1e-6) continue;
+    if (last > kFlat) continue;
     const std::string name = "object \"" + d.objects[static_cast<size_t>(instance.object)].name + '"';
-    if (last < -1e-6) {
+    if (last < -kFlat) {
       if (mirrored++ < kMostAlike)
         found.add("mirrored-instance", instance.where, name + " is placed mirrored",
                   "its transform turns right into left; a Scale with a negative number does");

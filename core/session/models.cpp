@@ -83,6 +83,15 @@ gltf::Selection selection_of(const ModelChoice& choice) {
 
 }  // namespace
 
+namespace {
+
+constexpr const char* kAsStatements = " as statements";
+
+}  // namespace
+
+std::string name_of_model_text(const std::string& model) { return model + kAsStatements; }
+bool is_model_text(const std::string& name) { return name.ends_with(kAsStatements); }
+
 bool is_model_file(const std::string& path) {
   std::string ending = fs::path(path).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -164,7 +173,7 @@ std::optional<ModelStatements> ModelStore::read(const ModelRequest& request, Dia
   note(shown, *description);
   // What it is to wear of its own does not stay, emission of before does not come in, and all of it moves.
   const char* dark = choice->materials ? "AreaLightSource \"\"\n" : "";
-  out.name = shown + " as statements";
+  out.name = name_of_model_text(shown);
   out.text = fmt::format("AttributeBegin\nActiveTransform All\n{}{}AttributeEnd\n", dark, description->text);
   return out;
 }

@@ -15,6 +15,10 @@ namespace whit {
 /// Whether a file is a glTF model: by its first bytes, or by its name where it is text.
 bool is_model_file(const std::string& path);
 
+/// The name of the text that stands for a model (Sources::name()), and whether a name is of such a text.
+std::string name_of_model_text(const std::string& model);
+bool is_model_text(const std::string& name);
+
 /// Reads the models of a scene file, each once. What is read refers to its own memory and outlives this.
 class ModelStore final : public ModelReader {
  public:

@@ -33,7 +33,7 @@ ParseResult parse_model(Sources& sources, const std::string& path, const gltf::S
   as_model.is_model = true;
   auto scene = models.scene_of(path, selection, failed.diagnostics);
   if (!scene) return failed;
-  ParseResult result = parse_text(sources, path + " as statements", std::move(scene->text),
+  ParseResult result = parse_text(sources, name_of_model_text(path), std::move(scene->text),
                                   std::filesystem::path(path).parent_path().string(), as_model);
   Diagnostics all = std::move(failed.diagnostics);
   all.append(result.diagnostics);

@@ -1,6 +1,18 @@
-// `whit check`: every problem that a render would meet on its way to the first ray, and in the pictures it would read.
+// `whit check`: every problem that a render would meet on its way to the first ray, and in the pictures it would read; and
+// what the scene does that its author hardly meant.
 
-#include "core/session/output.h"
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <list>
+#include <utility>
+
+#include "core/check/check.h"
+#include "core/check/findings.h"
+#include "core/check/names.h"
+#include "tools/whit/check_fix.h"
+#include "tools/whit/check_output.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
 #include "tools/whit/model_flags.h"
@@ -9,52 +21,124 @@
 namespace whit {
 namespace {
 
-/// What only building a scene finds: files that cannot be read, geometry that is not what it should be.
-Diagnostics problems_of_building(PlannedWorld planned, const std::string& path) {
-  Diagnostics found;
-  if (planned.bound.film.plugin) {
-    OutputRequest request;
-    request.scene_path = path;
-    found.append(plan_output(request, planned.bound.film).said);
+struct CheckFlags {
+  std::vector<std::string> scenes, allow, also;
+  std::string format = "text";
+  bool json = false, fix = false, strict = false, list = false;
+  ModelFlags model;
+};
+
+int list_findings() {
+  std::string out;
+  const auto add = [&out](const char* name, const char* severity, const char* what) {
+    out += fmt::format("{:<28} {:<15} {}\n", name, severity, what);
+  };
+  for (const FindingKind& k : finding_kinds())
+    add(k.name, fmt::format("{}{}", severity_name(k.severity), k.by_default ? "" : ", with --also").c_str(), k.what);
+  for (const NamedWarning& w : named_warnings()) add(w.name, "warning", w.what);
+  std::cout << out << std::flush;
+  return kDone;
+}
+
+/// "" or what is wrong with the flags beside what the table of flags says.
+std::string flag_problem(const CheckFlags& flags) {
+  for (const auto& names : {flags.allow, flags.also}) {
+    for (const std::string& name : names) {
+      if (std::string problem = problem_of_allowing(name); !problem.empty()) {
+        const std::string hint = did_you_mean(name, names_that_can_be_allowed());
+        return problem + (hint.empty() ? "; `whit check --list` shows all" : "; " + hint);
+      }
+    }
   }
-  BuildOptions options;
-  options.keep_going = options.only_check = true;
-  const BuiltWorld built = build_world(std::move(planned), options);
-  found.append(built.said);
-  built.textures->read_all();
-  found.append(built.textures->errors());
-  return found;
+  for (const std::string& path : flags.scenes) {
+    if (std::string problem = usage_problem(flags.model, path); !problem.empty()) return problem;
+    if (flags.fix && path == "-") return "--fix needs a file";
+  }
+  return {};
+}
+
+/// What people read: findings with their names, and what a render says too as it says it.
+Diagnostics for_people(const Diagnostics& found) {
+  Diagnostics out;
+  for (Diagnostic d : found.all()) {
+    const FindingKind* kind = find_finding_kind(d.name);
+    if (kind && kind->severity == d.severity) d.message += " [" + d.name + "]";
+    out.add(std::move(d));
+  }
+  return out;
+}
+
+/// Whether the answer is no. Notes are for information.
+bool is_bad(const Diagnostics& found) {
+  return std::any_of(found.all().begin(), found.all().end(),
+                     [](const Diagnostic& d) { return d.severity != Severity::Note; });
 }
 
 }  // namespace
 
 int check_command(const Arguments& args) {
-  std::vector<std::string> scenes;
-  ModelFlags model;
-  CommandLine command{"whit check",
-                      "Reports every problem of a scene without rendering; what a render warns of and goes past as "
-                      "pbrt-v3 does is an error here. Exit code 1 when there is any.",
-                      {{"scenes", &scenes, "Scene files or glTF models; standard input without any"}}};
-  add_model_flags(command, model);
+  CheckFlags flags;
+  CommandLine command{
+      "whit check",
+      "Reports every problem of a scene without rendering, and what it does that its author hardly meant; what a "
+      "render "
+      "warns of and goes past as pbrt-v3 does is an error here. Exit code 1 when there is any error or warning.",
+      {{"scenes", &flags.scenes, "Scene files or glTF models; standard input without any"},
+       {"--json", &flags.json, "Print what was found as JSON, short for --format json"},
+       {"--format",
+        &flags.format,
+        "How to print it: text on stderr, JSON or SARIF 2.1.0 on stdout",
+        {.choices = {"text", "json", "sarif"}}},
+       {"--allow", &flags.allow, "Leave findings of that name out; mistakes cannot be", {.repeats = true}},
+       {"--also", &flags.also, "Look for what is not looked for by default", {.repeats = true}},
+       {"--fix", &flags.fix, "Correct in the files what is beyond doubt: misspelt names"},
+       {"--strict", &flags.strict, "Call everything an error, notes too"},
+       {"--list", &flags.list, "List what can be found, and exit"}}};
+  add_model_flags(command, flags.model);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
-  if (scenes.empty()) scenes.push_back("-");
-  for (const std::string& path : scenes) {
-    if (const std::string problem = usage_problem(model, path); !problem.empty()) {
-      say("whit check: " + problem);
-      return kUsage;
+  if (flags.list) return list_findings();
+  if (flags.scenes.empty()) flags.scenes.push_back("-");
+  if (const std::string problem = flag_problem(flags); !problem.empty()) {
+    say("whit check: " + problem);
+    return kUsage;
+  }
+  if (flags.json) flags.format = "json";
+
+  ReadOptions options = read_options(flags.model);
+  options.read_unplaced = true;
+  CheckOptions wanted;
+  wanted.allowed = flags.allow, wanted.asked_for = flags.also;
+  std::list<ParsedFile> files;
+  std::vector<Checked> all;
+  for (const std::string& path : flags.scenes) {
+    if (flags.fix) {
+      CheckOptions of_text = wanted;
+      of_text.build = false;
+      const std::string problem = fix_slips([&] { return read_scene(path, options); },
+                                            [&](const ParsedFile& f) { return check_file(f, path, of_text); });
+      if (!problem.empty()) {
+        say("whit check: " + problem);
+        return kFileError;
+      }
+    }
+    const ParsedFile& file = files.emplace_back(read_scene(path, options));
+    Diagnostics found = check_file(file, path, wanted);
+    if (flags.format == "text") found = for_people(found);
+    if (flags.strict) found = strict(found);
+    if (is_bad(found)) code = kNo;
+    if (flags.format == "text") {
+      print_diagnostics(*file.sources, found);
+      files.clear();
+    } else {
+      all.push_back({file.sources.get(), std::move(found)});
     }
   }
-  ReadOptions options = read_options(model);
-  options.read_unplaced = true;
-  for (const std::string& path : scenes) {
-    const ParsedFile file = read_scene(path, options);
-    const Diagnostics all =
-        all_problems(file, [&](PlannedWorld planned) { return problems_of_building(std::move(planned), path); });
-    print_diagnostics(*file.sources, unexcused(all));
-    if (!all.all().empty()) code = kNo;
-  }
-  return code;
+  if (flags.format == "text") return code;
+  std::cout << (flags.format == "json" ? check_as_json(all) : check_as_sarif(all)) << '\n' << std::flush;
+  if (std::cout) return code;
+  say("whit check: cannot write to standard output");
+  return kFileError;
 }
 
 }  // namespace whit

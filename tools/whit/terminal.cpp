@@ -42,7 +42,7 @@ void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, b
   };
   std::map<std::tuple<Severity, std::string, std::string>, Equal> all_equal;
   const auto equal_to = [&](const Diagnostic& d) -> Equal& { return all_equal[{d.severity, d.message, d.remedy}]; };
-  size_t counts[2] = {}, shown[2] = {}, hidden = 0;  // by severity
+  size_t counts[3] = {}, shown[3] = {}, hidden = 0;  // by severity
   for (const Diagnostic& d : ordered) {
     ++counts[static_cast<size_t>(d.severity)];
     ++equal_to(d).count;
@@ -50,7 +50,7 @@ void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, b
   }
   for (const Diagnostic& d : ordered) {
     Equal& equal = equal_to(d);
-    if (equal.shown == kMostEqual || (quiet_warnings && d.severity == Severity::Warning)) continue;
+    if (equal.shown == kMostEqual || (quiet_warnings && d.severity != Severity::Error)) continue;
     if (shown[static_cast<size_t>(d.severity)]++ >= kMost) {
       ++hidden;
       continue;
@@ -62,9 +62,11 @@ void print_diagnostics(const Sources& sources, const Diagnostics& diagnostics, b
   }
   const size_t warnings = counts[static_cast<size_t>(Severity::Warning)];
   const size_t errors = counts[static_cast<size_t>(Severity::Error)];
-  if (errors + warnings < 2) return;
+  const size_t notes = counts[static_cast<size_t>(Severity::Note)];
+  if (errors + warnings + notes < 2) return;
   const auto counted = [](size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
   say(counted(errors, "error") + ", " + counted(warnings, "warning") +
+      (notes > 0 ? ", " + counted(notes, "note") : "") +
       (hidden > 0 ? fmt::format("; {} of them are not shown", hidden) : ""));
 }
 
@@ -83,15 +85,6 @@ Diagnostics strict(const Diagnostics& diagnostics) {
   Diagnostics out;
   for (Diagnostic d : diagnostics.all()) {
     d.severity = Severity::Error;
-    out.add(std::move(d));
-  }
-  return out;
-}
-
-Diagnostics unexcused(const Diagnostics& diagnostics) {
-  Diagnostics out;
-  for (Diagnostic d : diagnostics.all()) {
-    if (d.excused) d.severity = Severity::Error;
     out.add(std::move(d));
   }
   return out;

@@ -30,9 +30,6 @@ int exit_code(const Diagnostics& diagnostics);
 /// Turns every warning into an error (--strict).
 Diagnostics strict(const Diagnostics& diagnostics);
 
-/// Turns warnings of mistakes that are rendered past into errors (`whit check`).
-Diagnostics unexcused(const Diagnostics& diagnostics);
-
 /// A bar with elapsed time and an estimate on a terminal, a line now and then in a log.
 class Progress {
  public:
