@@ -140,6 +140,15 @@ class KeepGoing(unittest.TestCase):
         self.assertGreaterEqual(len(lines), 4)
         self.assertEqual(len(lines), len(set(lines)), said)
 
+    def test_worlds_of_one_file_say_it_once(self):
+        # Both worlds include the same statement.
+        self.write("part.pbrt", 'Shape "plymesh" "string filename" "gone.ply"\nMaterial "matte" "rgb kd" [1 1 1]\n')
+        world = SCENE % ('Include "part.pbrt"', SPHERE)
+        code, said = self.whit(self.write("scene.pbrt", world + world), "--keep-going", "--quiet")
+        self.assertEqual(code, 0, said)
+        lines = re.findall(r"(?m)^part.pbrt:\d.*: (?:error|warning): .*$", said)
+        self.assertEqual(len(lines), 2, said)
+
     def test_the_file_met_in_the_field(self):
         for name in ("keep-going-unreadable-picture.pbrt", "not-a-picture.png"):
             with open(os.path.join(FIELD, name), "rb") as f:

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <optional>
 #include <set>
+#include <string>
+#include <tuple>
 
 #include "core/render/debug_sample.h"
 #include "core/scene/problems.h"
@@ -66,15 +68,25 @@ class RenderJob {
   /// Prints diagnostics; the exit code when they stop the render.
   int report(const Diagnostics& found) {
     const Diagnostics d = settings_.strict ? strict(found) : found;
-    print_diagnostics(sources_, d, settings_.min_log_level >= 2);
-    log(d);
+    const Diagnostics news = not_said_yet(d);
+    print_diagnostics(sources_, news, settings_.min_log_level >= 2);
+    log(news);
     if (!d.has_errors()) return kDone;
     if (!settings_.keep_going) return exit_code(d);
-    for (const Diagnostic& one : d.all()) {
+    for (const Diagnostic& one : news.all()) {
       if (one.severity == Severity::Error) passed_.push_back(one);
     }
-    say("going on with what is usable (--keep-going)");
+    if (news.has_errors()) say("going on with what is usable (--keep-going)");
     return kDone;
+  }
+
+  /// Going past an error, a later step meets it again, and so does another world of the same file.
+  Diagnostics not_said_yet(const Diagnostics& d) {
+    Diagnostics news;
+    for (const Diagnostic& one : d.all()) {
+      if (!one.where.known() || said_.emplace(one.where.file, one.where.offset, one.message).second) news.add(one);
+    }
+    return news;
   }
 
   /// Says what there is to say of the files to be written, and the first error. Without a place in the scene they are of
@@ -299,7 +311,8 @@ class RenderJob {
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
   bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.
   std::vector<Diagnostic> passed_;  ///< Errors that --keep-going went past.
-  std::set<std::string> unread_;    ///< Files of objects that this world never places.
+  std::set<std::tuple<uint32_t, uint64_t, std::string>> said_;  ///< Places and messages.
+  std::set<std::string> unread_;                                ///< Files of objects that this world never places.
 };
 
 }  // namespace
