@@ -199,7 +199,7 @@ class Formatter {
     if (line_open_) out_.text("\n");
     if (line_open_ && newlines_before(offset) > 1) out_.text("\n");
     line_open_ = true;
-    out_.text(std::string(2 * depth_, ' '));
+    for (size_t i = 0; i < depth_; ++i) out_.text(options_.indent);
   }
 
   static std::string_view trimmed(std::string_view text) {

@@ -18,8 +18,8 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> table = {
       {"render", render_command, "[render] SCENE... [flags]",
        "render scenes and glTF models (the word may be left out)"},
-      {"check", check_command, "check SCENE...", "report every problem of a scene without rendering"},
-      {"fmt", fmt_command, "fmt SCENE [--in-place]", "write a scene file in normal form"},
+      {"check", check_command, "check SCENE... [--fix] [--json]", "report every problem of a scene without rendering"},
+      {"fmt", fmt_command, "fmt SCENE... [--in-place | --check]", "write scene files in normal form"},
       {"watch", watch_command, "watch SCENE [--open] [--terminal]", "show a scene in the browser while it is written"},
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},
