@@ -36,6 +36,9 @@ class Lexer {
   /// `text` must outlive the lexer. A byte-order mark at its start is skipped.
   Lexer(std::string_view text, uint32_t file, Reporter& reporter);
 
+  /// Goes on at another byte, where a token begins or may begin.
+  void start_at(uint64_t offset) { consumed_ = offset, peeked_valid_ = false; }
+
   /// The next token, left where it is.
   const Token& peek();
 

@@ -18,6 +18,7 @@ ParsedFile parsed_file(const ReadOptions& options,
   ModelStore of_this_reading(options.allow_outside);
   ModelStore& models = options.models ? *options.models : of_this_reading;
   if (options.copy_files) file.sources->copy_files();
+  for (const auto& [path, text] : options.unsaved) file.sources->stand_in(path, text);
   ParseResult parsed = parse(*file.sources, models, {.read_unplaced = options.read_unplaced, .models = &models});
   file.worlds = std::move(parsed.scenes), file.said = std::move(parsed.diagnostics), file.bytes = parsed.bytes;
   file.models = models.paths(), file.notes = models.notes();

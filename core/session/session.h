@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/base/stopwatch.h"
@@ -39,6 +40,8 @@ struct ReadOptions {
   bool allow_outside = false;    ///< Models may name files outside of their folder.
   ModelStore* models = nullptr;  ///< Has them from earlier readings; null: they are read for this one.
   bool copy_files = false;       ///< Sources::copy_files().
+  /// Texts that stand for files, by path, as Sources::stand_in().
+  std::vector<std::pair<std::string, std::string>> unsaved = {};
 };
 /// A .pbrt file, or a glTF model, of which a scene is made.
 ParsedFile read_scene_file(const std::string& path, const ReadOptions& options = {});

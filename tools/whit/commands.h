@@ -15,6 +15,7 @@ int render_command(const Arguments& args);   ///< whit [render] SCENE...
 int check_command(const Arguments& args);    ///< whit check SCENE...
 int fmt_command(const Arguments& args);      ///< whit fmt SCENE
 int watch_command(const Arguments& args);    ///< whit watch SCENE
+int lsp_command(const Arguments& args);      ///< whit lsp
 int explain_command(const Arguments& args);  ///< whit explain SCENE
 int cost_command(const Arguments& args);     ///< whit cost SCENE
 int import_command(const Arguments& args);   ///< whit import MODEL -o SCENE

@@ -1,0 +1,106 @@
+#include "core/author/diagnose.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "core/session/output.h"
+#include "core/session/session.h"
+#include "parser/lexer.h"
+
+namespace whit::author {
+namespace {
+
+/// What only building a scene finds: files that cannot be read, geometry that is not what it should be.
+Diagnostics problems_of_building(PlannedWorld planned, const std::string& path) {
+  Diagnostics found;
+  if (planned.bound.film.plugin) {
+    OutputRequest request;
+    request.scene_path = path;
+    found.append(plan_output(request, planned.bound.film).said);
+  }
+  BuildOptions options;
+  options.keep_going = options.only_check = true;
+  const BuiltWorld built = build_world(std::move(planned), options);
+  found.append(built.said);
+  built.textures->read_all();
+  found.append(built.textures->errors());
+  return found;
+}
+
+/// From diagnostics to findings: places of bytes become positions.
+class Translator {
+ public:
+  Translator(const Sources& sources, std::string main_file, Encoding encoding)
+      : sources_(sources), main_(std::move(main_file)), encoding_(encoding) {
+    findings_[main_];
+    for (uint32_t file = 0; file < sources.size(); ++file) {
+      paths_.push_back(canonical_path(sources.name(file)));
+      std::error_code ignored;
+      is_file_.push_back(paths_.back() == main_ || std::filesystem::exists(sources.name(file), ignored));
+      if (is_file_.back()) findings_[paths_.back()];
+    }
+  }
+
+  void add(const Diagnostic& d) {
+    Finding f;
+    f.severity = d.excused ? Severity::Error : d.severity;
+    f.message = d.message, f.remedy = d.remedy, f.name = d.name, f.slip = d.slip;
+    const std::optional<Place> at = place(d.where);
+    if (at) f.begin = at->begin, f.end = at->end;
+    // Of a text that is no file, such as the statements that stand for a model.
+    if (const std::string where = sources_.location(d.where); !at && !where.empty())
+      f.message = where + ": " + f.message;
+    f.other = place(d.other);
+    findings_[at ? at->path : main_].push_back(std::move(f));
+  }
+
+  Findings take() { return std::move(findings_); }
+
+ private:
+  std::optional<Place> place(SourcePos where) {
+    if (where.file >= paths_.size() || !is_file_[where.file]) return std::nullopt;
+    auto [found, fresh] = documents_.try_emplace(where.file);
+    const std::string_view text = sources_.text(where.file);
+    if (fresh) found->second = Document(std::string(text), encoding_);
+    const uint64_t length = token_at(text, where.offset).size();
+    return Place{paths_[where.file], found->second.position(where.offset),
+                 found->second.position(where.offset + length)};
+  }
+
+  const Sources& sources_;
+  std::string main_;
+  Encoding encoding_;
+  std::vector<std::string> paths_;
+  std::vector<bool> is_file_;
+  std::map<uint32_t, Document> documents_;
+  Findings findings_;
+};
+
+}  // namespace
+
+std::string canonical_path(const std::string& path) {
+  std::error_code failed;
+  const std::filesystem::path found = std::filesystem::weakly_canonical(path, failed);
+  return found.empty() ? path : found.string();
+}
+
+Findings diagnose(const std::string& main_file, const std::vector<OpenText>& open, const DiagnoseOptions& options) {
+  const auto give_up = [&options] { return options.give_up && options.give_up(); };
+  ReadOptions read;
+  read.read_unplaced = true;
+  for (const OpenText& o : open) read.unsaved.emplace_back(o.path, *o.text);
+  const ParsedFile file = read_scene_file(main_file, read);
+  if (give_up()) return {};
+  std::function<Diagnostics(PlannedWorld)> further;
+  if (options.thorough) {
+    further = [&](PlannedWorld planned) {
+      return give_up() ? Diagnostics() : problems_of_building(std::move(planned), main_file);
+    };
+  }
+  const Diagnostics all = all_problems(file, further);
+  Translator translator(*file.sources, canonical_path(main_file), options.encoding);
+  for (const Diagnostic& d : all.all()) translator.add(d);
+  return translator.take();
+}
+
+}  // namespace whit::author
