@@ -38,9 +38,11 @@ Document::Document(std::string text, Encoding encoding) : text_(std::move(text))
 
 void Document::find_lines() {
   starts_.assign(1, 0);
-  for (size_t at = text_.find_first_of("\r\n"); at != std::string::npos; at = text_.find_first_of("\r\n", at)) {
-    at += text_[at] == '\r' && at + 1 < text_.size() && text_[at + 1] == '\n' ? 2 : 1;
-    starts_.push_back(at);
+  const size_t size = text_.size();
+  for (size_t at = 0; at < size; ++at) {
+    const char c = text_[at];
+    if (c > '\r') continue;  // As nearly all are.
+    if (c == '\n' || (c == '\r' && (at + 1 == size || text_[at + 1] != '\n'))) starts_.push_back(at + 1);
   }
 }
 

@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Random edits of every scene in `whit lsp`: it must not crash, and what it says of the last text must be what `whit check`
+says of that text."""
+import collections
+import glob
+import os
+import random
+import re
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from lsp_client import Client, position, uri_of  # noqa: E402
+
+WHIT, SOURCE = os.environ["WHIT"], os.environ["WHIT_SOURCE_DIR"]
+EDITS, EDITS_EACH_ELSEWHERE, LARGEST = 2000, 3, 200000
+PIECES = ['"', "[", "]", "#", "\n", " ", "1", "-", "x", "Shape", "AttributeBegin\n", "AttributeEnd\n", "WorldEnd\n", '"float radius" ',
+          '"rgb Kd" [ 1 2 3 ]', "\u00e9", "\U0001f600", "Include \"x.pbrt\"\n", '"texture Kd" "t"', "NamedMaterial \"m\"\n", "\r\n", "\\"]
+ASKED = ["completion", "hover", "definition", "documentHighlight"]
+ASKED_OF_ALL = ["documentSymbol", "foldingRange", "semanticTokens/full", "documentColor", "documentLink"]
+
+
+def checked(folder, text):
+    """What `whit check` says of a text that stands in a folder: how often it says what of which line of it."""
+    done = subprocess.run([WHIT, "check", "-"], input=text.encode(), capture_output=True, cwd=folder)
+    assert done.returncode in (0, 1), (done.returncode, done.stderr[-500:])
+    said = collections.Counter()
+    hidden = False
+    for line in done.stderr.decode(errors="replace").split("\n"):
+        found = re.match(r"(?:<stdin>:(\d+):\d+: )?(error|warning): (.*)", line)
+        if found:
+            said[(int(found[1] or 1), found[2], found[3])] += 1
+        hidden = hidden or "more places, the last at" in line or "are not shown" in line
+    return said, hidden
+
+
+def of_server(folder, diagnostics):
+    said = collections.Counter()
+    for d in diagnostics:
+        # The first line is the message, what follows the remedy; names of files start from the folder there.
+        message = d["message"].split("\n")[0].replace(folder + "/", "")
+        said[(d["range"]["start"]["line"] + 1, "error" if d["severity"] == 1 else "warning", message)] += 1
+    return said
+
+
+def comparable(said):
+    """Messages as far as both show them alike: without what cannot be printed, and without the name of the file."""
+    out = collections.Counter()
+    for (line, severity, message), count in said.items():
+        plain = re.sub(r"\\[xu][0-9a-f]+|\\[tnr]|[^ -~]|<stdin>|[\w.-]+\.pbrt(?=:\d)", "", message)
+        out[(line, severity, plain.strip())] += count
+    return out
+
+
+def random_edit(r, text):
+    """A piece of the text in place of which another stands: its lines and characters, and that other."""
+    begin = r.randrange(len(text) + 1)
+    end = min(len(text), begin + r.choice((0, 0, 1, 1, 2, 5, 20, 80)))
+    return begin, end, r.choice(PIECES) if r.random() < .6 else ""
+
+
+def place(text, at):
+    # Lines end at \n, \r\n and \r.
+    before = text[:at]
+    line = len(re.findall(r"\r\n|\r(?!\n)|\n", before))
+    if before.endswith("\r") and text[at:at + 1] == "\n":
+        line -= 1
+        before = before[:-1]
+    start = max(before.rfind("\n"), before.rfind("\r")) + 1
+    return line, len(before[start:].encode("utf-16-le")) // 2
+
+
+def fuzz(client, r, path, edits):
+    folder = os.path.realpath(os.path.dirname(path))
+    with open(path, encoding="utf-8", errors="replace", newline="") as f:
+        text = original = f.read()
+    uri = client.open(path, text)
+    for i in range(edits):
+        if r.random() < .15:
+            text = original
+            client.edit(uri, (text,))
+        begin, end, by = random_edit(r, text)
+        # Not between \r and \n, where no position is.
+        if text[begin - 1:begin + 1] == "\r\n" or text[end - 1:end + 1] == "\r\n":
+            continue
+        change = (by, place(text, begin), place(text, end))
+        text = text[:begin] + by + text[end:]
+        client.edit(uri, change)
+        if i % 4 == 0:
+            at = place(text, min(len(text), begin + len(by)))
+            client.ask("textDocument/" + r.choice(ASKED), {"textDocument": {"uri": uri}, "position": position(at)})
+            client.ask("textDocument/" + r.choice(ASKED_OF_ALL), {"textDocument": {"uri": uri}})
+    client.save(uri)
+    expected, hidden = checked(folder, text)
+    expected = comparable(expected)
+
+    def right(diagnostics):
+        found = comparable(of_server(folder, diagnostics))
+        # What is said at very many places is shown at a few of them.
+        return not expected - found if hidden else expected == found
+
+    try:
+        client.wait_diagnostics(uri, right, 30)
+    except AssertionError:
+        found = comparable(of_server(folder, client.diagnostics.get(uri, (0, 0, []))[2]))
+        with open(os.path.join(os.environ.get("WHIT_BINARY_DIR", "."), "lsp_fuzz_failure.pbrt"), "w", newline="") as f:
+            f.write(text)
+        raise AssertionError("%s: check alone says %s; the server alone %s" % (path, expected - found, found - expected))
+    client.close(uri)
+
+
+def scenes(pattern):
+    found = glob.glob(os.path.join(SOURCE, pattern), recursive=True)
+    return sorted(f for f in found if os.path.getsize(f) < LARGEST)
+
+
+def main():
+    ours, others = scenes("scenes/**/*.pbrt"), scenes("tests/conformance/**/*.pbrt")
+    # With sanitizers everything takes longer, and a part of it shows as much.
+    share = 10 if os.environ.get("WHIT_SANITIZE") else 1
+    r = random.Random(12)
+    client = Client(root=SOURCE)
+    for path in ours[::share]:
+        fuzz(client, r, path, EDITS // len(ours) + 1)
+    for path in others[::3 * share]:
+        fuzz(client, r, path, EDITS_EACH_ELSEWHERE)
+    assert client.end() == 0
+    with client.changed:
+        internal = [a for a in client.answers.values() if "error" in a and a["error"]["code"] in (-32603, -32602)]
+    assert not internal, internal[:3]
+
+
+if __name__ == "__main__":
+    main()
