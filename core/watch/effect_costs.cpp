@@ -10,9 +10,9 @@
 namespace whit {
 namespace {
 
-/// Pixels of the piece, in the middle of the picture; and for how many samples of each at most.
+/// Pixels of the piece, in the middle of the picture; and how many samples each has at most.
 constexpr double kPixels = 96 * 96;
-constexpr int kMostSamples = 8;
+constexpr int kMostSamples = 64;
 /// Processor seconds that tell enough.
 constexpr double kEnough = 0.08;
 
@@ -29,7 +29,8 @@ std::optional<double> EffectCosts::share_without(const BuiltWorld& without, int 
   options.crop[0] = options.crop[2] = 0.5 - side / 2, options.crop[1] = options.crop[3] = 0.5 + side / 2;
   FilmRender a(*world_.scene, options), b(*without.scene, options);
   const std::array<FilmRender*, 2> both{&a, &b};
-  const int most = std::min({kMostSamples, world_.scene->samples_per_pixel, without.scene->samples_per_pixel});
+  const int own = std::min(world_.scene->samples_per_pixel, without.scene->samples_per_pixel);
+  const int most = world_.scene->sampler().extends() ? kMostSamples : std::min(kMostSamples, own);
   for (int samples = 1; samples <= most; samples *= 2) {
     if (!FilmRender::extend_in_turn(both, static_cast<uint32_t>(samples))) return std::nullopt;
     if (a.cpu_seconds() > kEnough) break;

@@ -8,7 +8,7 @@ inline constexpr const char* kWatchScriptPanel = R"js(
 
 const sign = (v) => (v > 0 ? "+" : v < 0 ? "−" : "") + Math.abs(v);
 const seconds = (s) => s < 0.0995 ? Math.round(s * 1000) + " ms" : s < 9.95 ? s.toFixed(1) + " s" : Math.round(s) + " s";
-const percent = (share) => Math.abs(share) < 0.01 ? "< 1 %" : Math.round(100 * share) + " %";
+const percent = (share) => share < 0.01 ? "< 1 %" : Math.round(100 * share) + " %";
 const fileName = (path) => path.split("/").pop();
 
 let toastTimer = 0;
@@ -103,7 +103,10 @@ function showProblems() {
   $("trouble").hidden = !errors.length;
   if (errors.length) {
     const left = state.problems_left_out ? `, and ${state.problems_left_out} more` : "";
-    $("trouble").replaceChildren(element("h2", {textContent: count(errors.length, "error") + left}), ...errors.map(problemElement));
+    const close = element("button", {className: "plain close", textContent: "×", title: "Until something else is wrong",
+                                     onclick: () => { $("trouble").hidden = true; }});
+    $("trouble").replaceChildren(close, element("h2", {textContent: count(errors.length, "error") + left}),
+                                 ...errors.map(problemElement));
   }
   $("stage").classList.toggle("stale", state.stale);
   $("warnings").hidden = !warnings.length;

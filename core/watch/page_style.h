@@ -40,6 +40,7 @@ border:1px solid var(--rule);border-left:5px solid var(--bad);box-shadow:0 18px 
 -webkit-user-select:text}
 #trouble[hidden]{display:none}
 #trouble>h2{font-size:14px;font-weight:600;margin:0;padding:13px 18px 0;color:var(--bad)}
+#trouble .close{position:absolute;right:9px;top:9px}
 .problem{padding:11px 18px 13px;border-top:1px solid var(--rule)}
 #trouble>h2+.problem{border-top:0}
 .problem p{margin:0;overflow-wrap:anywhere;line-height:1.4}

@@ -78,13 +78,16 @@ std::string excerpt_of(const Sources& sources, const Diagnostic& d) {
 
 std::vector<PreviewProblem> problems_of(const Sources& sources, const Diagnostics& said, size_t& left_out) {
   std::vector<Diagnostic> all = said.all();
+  const auto is_error = [](const Diagnostic& d) {
+    return d.severity == Severity::Error || d.excused || d.slip.known();
+  };
   std::stable_sort(all.begin(), all.end(),
-                   [](const Diagnostic& a, const Diagnostic& b) { return a.severity > b.severity; });
+                   [&](const Diagnostic& a, const Diagnostic& b) { return is_error(a) > is_error(b); });
   std::vector<PreviewProblem> out;
   for (const Diagnostic& d : all) {
     if (out.size() == kProblemsShown) break;
-    out.push_back({d.severity == Severity::Error, place_of(sources, d.where), d.message, d.remedy,
-                   d.where.known() ? excerpt_of(sources, d) : ""});
+    out.push_back(
+        {is_error(d), place_of(sources, d.where), d.message, d.remedy, d.where.known() ? excerpt_of(sources, d) : ""});
   }
   left_out = all.size() - out.size();
   return out;

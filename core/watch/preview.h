@@ -47,7 +47,7 @@ struct PlaceInFile {
 };
 
 struct PreviewProblem {
-  bool is_error = true;
+  bool is_error = true;  ///< Or a mistake beyond doubt that is rendered past.
   PlaceInFile where;
   std::string message, remedy, excerpt;
 };

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """`whit watch` shows what `whit render` renders, and shows it again whenever a file that the scene is made of changes."""
+import itertools
 import os
 import subprocess
 import sys
@@ -11,6 +12,7 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from watcher import BODY, SCENE, WHIT, Watcher, write  # noqa: E402
 
 PROBLEMS = []
+NUMBERS = itertools.count()
 
 
 def expect(what, value, expected):
@@ -20,7 +22,8 @@ def expect(what, value, expected):
 
 def rendered(watcher, *flags):
     """What `whit render` makes of the scene."""
-    out = watcher.path("rendered.exr")
+    # Another file each time: of one that has changed within a second, OpenImageIO may show what it was.
+    out = watcher.path("rendered%d.exr" % next(NUMBERS))
     subprocess.run([WHIT, "render", watcher.path("scene.pbrt"), "--quiet", "--display", "none", "--outfile", out, *flags],
                    check=True)
     return oiio.ImageBuf(out).get_pixels(oiio.FLOAT)[..., :3]
@@ -53,18 +56,21 @@ def check_edits(watcher):
 def check_errors(watcher):
     state = watcher.done()
     before = watcher.pixels(state)
-    write(watcher.path("body.pbrt"), BODY.replace("radius", "raduis"))
+    write(watcher.path("body.pbrt"), BODY.replace("Shape", "Shpae"))
     state = watcher.wait_for(lambda s: s["stale"])
     problem = state["problems"][0]
     expect("file", os.path.basename(problem["where"]["file"]), "body.pbrt")
     expect("path", problem["where"]["path"], watcher.path("body.pbrt"))
-    # The second line: Shape "sphere" "float raduis" 1, where the parameter begins in the 16th column.
-    expect("place", [problem["where"]["line"], problem["where"]["column"]], [2, 16])
+    expect("place", [problem["where"]["line"], problem["where"]["column"]], [2, 1])
     expect("error", problem["error"], True)
-    expect("remedy", "radius" in problem["remedy"], True)
-    expect("excerpt", 'Shape "sphere" "float raduis" 1' in problem["excerpt"], True)
+    expect("remedy", "Shape" in problem["remedy"], True)
+    expect("excerpt", 'Shpae "sphere" "float radius" 1' in problem["excerpt"], True)
     expect("the last good picture", bool(numpy.array_equal(watcher.pixels(state), before)), True)
     expect("not written then", bool(watcher.post("camera/write", {})["problem"]), True)
+    # What is rendered past is a mistake too, and there is a picture.
+    write(watcher.path("body.pbrt"), BODY.replace("radius", "raduis"))
+    state = watcher.done(state["reading"] + 1)
+    expect("a mistake", [[p["error"], p["where"]["line"], p["where"]["column"]] for p in state["problems"]], [[True, 2, 16]])
     write(watcher.path("body.pbrt"), BODY)
     state = watcher.done(state["reading"] + 1)
     expect("no problem any more", state["problems"], [])
@@ -220,7 +226,7 @@ def check_terminal():
             drawn = subprocess.run([WHIT, "watch", "--terminal=" + kind, watcher.path("scene.pbrt")], capture_output=True,
                                    timeout=60, check=False)
             expect("--terminal=" + kind, [drawn.returncode, drawn.stdout.startswith(start)], [0, True])
-        write(watcher.path("body.pbrt"), 'Shape "spere"\n')
+        write(watcher.path("body.pbrt"), 'Shpae "sphere"\n')
         failed = subprocess.run([WHIT, "watch", "--terminal", watcher.path("scene.pbrt")], capture_output=True, timeout=60,
                                 check=False, text=True)
         expect("with errors", [failed.returncode, "body.pbrt:1:" in failed.stderr], [3, True])

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The page of `whit watch` in Chromium: the picture changes when the scene is saved, errors appear and go, what is under the
 cursor is right, sliders and checkboxes work, the camera flies and is written back; without a message in its console."""
+import itertools
 import os
 import re
 import subprocess
@@ -15,6 +16,7 @@ from browser import Browser, chromium  # noqa: E402
 from watcher import BODY, SCENE, WHIT, Watcher, write  # noqa: E402
 
 PROBLEMS = []
+NUMBERS = itertools.count()
 
 
 def expect(what, value, expected):
@@ -50,7 +52,8 @@ class Page:
 
 def rendered(watcher):
     """The bytes that `whit render` shows."""
-    out = watcher.path("rendered.png")
+    # Another file each time: of one that has changed within a second, OpenImageIO may show what it was.
+    out = watcher.path("rendered%d.png" % next(NUMBERS))
     subprocess.run([WHIT, "render", watcher.path("scene.pbrt"), "--quiet", "--outfile", out], check=True)
     return oiio.ImageBuf(out).get_pixels(oiio.UINT8)[..., :3].astype(int)
 
@@ -75,18 +78,24 @@ def check_edit(page):
 def check_error(page):
     before, reading = page.bytes(), page.reading()
     expect("no error", page.run("$('trouble').hidden"), True)
-    write(page.watcher.path("body.pbrt"), BODY.replace("sphere", "spere"))
+    write(page.watcher.path("body.pbrt"), BODY.replace("Shape", "Shpae"))
     page.browser.wait_for("!$('trouble').hidden")
     text = page.run("$('trouble').innerText")
-    for part in ("body.pbrt:2", "spere", "sphere", "1 error"):
+    for part in ("body.pbrt:2", "Shpae", "Shape", "1 error"):
         expect("the error says " + part, part in text, True)
     expect("over the last good picture", bool((before == page.bytes()).all()), True)
     expect("which is dimmed", page.run("getComputedStyle(screen).filter !== 'none'"), True)
     page.run("window.copied = []; copy = (text) => { copied.push(text); }; 0")
     page.run("$('trouble').querySelector('.place').click(); 0")
     expect("its place is copied", page.run("copied.at(-1)"), page.watcher.path("body.pbrt") + ":2")
+    # What is rendered past lies there too, until it is closed; the picture is as it should be.
+    write(page.watcher.path("body.pbrt"), BODY.replace("radius", "raduis"))
+    page.browser.wait_for("$('trouble').innerText.includes('raduis')")
+    page.browser.wait_for("!state.stale && getComputedStyle(screen).filter === 'none'")
+    page.run("$('trouble').querySelector('.close').click(); 0")
+    expect("closed", page.run("$('trouble').hidden"), True)
     # Text of a scene is no markup.
-    write(page.watcher.path("body.pbrt"), 'Shape "<img src=x onerror=alert(1)>"\n')
+    write(page.watcher.path("body.pbrt"), 'Shpae "<img src=x onerror=alert(1)>"\n')
     page.browser.wait_for("$('trouble').innerText.includes('onerror')")
     expect("no element of the scene's", page.run("document.querySelectorAll('#trouble img').length"), 0)
     write(page.watcher.path("body.pbrt"), BODY)
