@@ -25,10 +25,12 @@ std::string command_names() {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-std::string replaced(std::string text, std::string_view what, std::string_view by) {
-  for (size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
-    text.replace(at, what.size(), by);
-  return text;
+std::string replaced(std::string_view text, std::string_view what, std::string_view by) {
+  std::string out;
+  size_t from = 0;
+  for (size_t at; (at = text.find(what, from)) != std::string_view::npos; from = at + what.size())
+    out.append(text.substr(from, at - from)).append(by);
+  return out.append(text.substr(from));
 }
 
 /// The first sentence or clause of a help text, which has to fit beside a flag.
@@ -217,7 +219,7 @@ std::string fish_quoted(std::string text) {
 std::string fish_action(const FlagDescription& flag) {
   const std::string words = fmt::format("{}", fmt::join(flag.words, " "));
   if (flag.list && !flag.words.empty())
-    return fmt::format(" -x -a {}", fish_quoted(fmt::format("(__fish_append , {})", words)));
+    return fmt::format(" -x -a {}", fish_quoted(fmt::format("(__whit_list {})", words)));
   if (!flag.words.empty()) return fmt::format(" -x -a {}", fish_quoted(words));
   if (!flag.files) return " -x";
   return *flag.files == "/" ? " -x -a '(__fish_complete_directories)'" : " -r -F";
@@ -233,6 +235,13 @@ function __whit_is
         set words[2] render
     end
     test "$words[2]" = $argv[1]
+end
+
+# Words for the place behind the last comma of a list.
+function __whit_list
+    set -l before (commandline -ct | string replace -r '^--[^=]*=' '' | string match -r '^.*,')
+    set -q before[1]; or set before ''
+    printf '%s\n' $before$argv
 end
 
 function __whit_at_first_word

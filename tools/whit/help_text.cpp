@@ -65,7 +65,7 @@ std::string facts_of(const ParamSpec& p) {
   if (!p.default_text.empty()) add("default " + p.default_text);
   add(unit_name(p.unit));
   add(limits_text(p.range));
-  if (!p.choices.empty()) add(fmt::format("one of {}", fmt::join(p.choices, " ")));
+  if (!p.choices.empty()) add(fmt::format("one of \"{}\"", fmt::join(p.choices, "\" \"")));
   return facts;
 }
 
@@ -88,9 +88,11 @@ void print_param(const ParamSpec& p) {
 void print_overview() {
   fmt::print(
       "whit renders pbrt-v3 scene files and glTF models with an Embree-accelerated Whitted integrator.\n\ncommands\n");
+  size_t longest = 0;
+  for (const Command& c : commands()) longest = std::max(longest, std::string_view(c.synopsis).size());
   for (const Command& c : commands()) {
-    fmt::print("  whit {:<32} ", c.synopsis);
-    print_words(c.summary, 40, 40);
+    fmt::print("  whit {:<{}}  ", c.synopsis, longest);
+    print_words(c.summary, longest + 9, longest + 9);
   }
   fmt::print("  (each has --help)\n\nplugins\n");
   std::set<std::string> categories;
