@@ -13,6 +13,8 @@ SCENE = """\
 Film "image" "integer xresolution" [8] "integer yresolution" [8]
 Camera "perspective"
 WorldBegin
+  LightSource "distant"
+  Shape "sphere"
 WorldEnd
 """
 

@@ -110,7 +110,7 @@ void print_overview() {
 }
 
 std::string limits_text(const Range& r) {
-  constexpr double most = std::numeric_limits<double>::max();
+  constexpr double most = std::numeric_limits<float>::max();
   return r.min <= -most && r.max >= most ? std::string() : range_text(r);
 }
 
