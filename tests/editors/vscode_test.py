@@ -22,7 +22,7 @@ PROGRAM = """\
 #!/bin/sh
 echo "$@" >> "%(folder)s/calls"
 case "$1" in
-  watch) echo "watching"; echo "http://127.0.0.1:4567/?token=abc"; echo $$ > "%(folder)s/pid"; exec sleep 60 ;;
+  watch) echo "watching"; echo "http://127.0.0.1:4567/abc/"; echo $$ > "%(folder)s/pid"; exec sleep 60 ;;
 esac
 """
 
@@ -85,8 +85,8 @@ class Activation(unittest.TestCase):
         self.assertTrue(did["saved"])
         # Once started, the second time only shown again.
         self.assertEqual([c for c in self.calls() if c.startswith("watch")],
-                         ["watch %s --port 0 --spp 4" % self.scene])
-        opened = ["simpleBrowser.api.open", {"text": "http://127.0.0.1:4567/?token=abc"},
+                         ["watch %s --spp 4" % self.scene])
+        opened = ["simpleBrowser.api.open", {"text": "http://127.0.0.1:4567/abc/"},
                   {"viewColumn": -2, "preserveFocus": True}]
         self.assertEqual(did["executed"], [opened, opened])
         # It ends with VS Code.

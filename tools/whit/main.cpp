@@ -21,8 +21,6 @@ const std::vector<Command>& commands() {
       {"check", check_command, "check SCENE... [--fix] [--json]", "report every problem of a scene without rendering"},
       {"fmt", fmt_command, "fmt SCENE... [--in-place | --check]", "write scene files in normal form"},
       {"watch", watch_command, "watch SCENE [--open] [--terminal]", "show a scene in the browser while it is written"},
-      {"check", check_command, "check SCENE...", "report every problem of a scene without rendering"},
-      {"fmt", fmt_command, "fmt SCENE [--in-place]", "write a scene file in normal form"},
       {"lsp", lsp_command, "lsp", "serve an editor: the language server for scene files, on standard input and output"},
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},

@@ -77,7 +77,7 @@ function addressIn(text) {
 function startWatch(file, uri) {
   const program = programPath(uri);
   const extra = settings(uri).get('previewArguments') || [];
-  const child = spawn(program, ['watch', file, '--port', '0', ...extra]);
+  const child = spawn(program, ['watch', file, ...extra]);
   const preview = { child, address: undefined };
   previews.set(file, preview);
   child.stderr.on('data', (data) => output.append(data.toString()));
