@@ -30,6 +30,7 @@ struct Before {
   std::string typed;       ///< Of the word or string that is being written.
   bool in_string = false;  ///< Inside of quotes.
   Span replaces;           ///< What is written and goes on behind the place.
+  bool closed = false;     ///< The last of it is the closing quote.
 };
 
 /// Reads the words in front of a place, be the statement there right or not.
@@ -86,9 +87,9 @@ class Reader {
     uint64_t end = offset_;
     while (end < text_.size() && text_[end] != '"' && text_[end] != '\n' && text_[end] != ' ' && text_[end] != ']')
       ++end;
-    const bool closed = end < text_.size() && text_[end] == '"';
-    // In a declaration it may be the opening quote of the next parameter that follows a blank.
-    out_.replaces = {token.offset + 1, closed ? end + 1 : std::max(offset_, end)};
+    // Behind a blank it would be the opening quote of the next parameter.
+    out_.closed = end < text_.size() && text_[end] == '"';
+    out_.replaces = {token.offset + 1, out_.closed ? end + 1 : end};
     stop(expected());
   }
 
@@ -465,8 +466,7 @@ class Completer {
     const size_t slash = before_.typed.rfind('/');
     const std::string folder = slash == std::string::npos ? "" : before_.typed.substr(0, slash + 1);
     std::error_code failed;
-    std::vector<Proposal> found;
-    const fs::path in = workspace_.resolve(main(), folder.empty() ? "." : folder);
+    const fs::path in = fs::path(workspace_.resolve(main(), folder.empty() ? "." : folder)).lexically_normal();
     for (fs::directory_iterator i(in, failed), end; !failed && i != end && out_.size() < kMost; i.increment(failed)) {
       const std::string name = i->path().filename().string();
       std::error_code ignored;
@@ -479,8 +479,11 @@ class Completer {
       if (name.starts_with(".") || !fits || i->path() == fs::path(file_.path)) continue;
       Proposal& p = add_string(is_folder ? Proposal::Kind::Folder : Proposal::Kind::File, name,
                                folder + name + (is_folder ? "/" : ""), "", "");
-      // A folder is gone on from, so that the closing quote comes later.
-      if (is_folder && !p.text.empty()) p.label += "/";
+      if (!is_folder) continue;
+      // One goes on from a folder: the string is not closed yet, and stays so where it is.
+      p.label += "/";
+      p.text.pop_back();
+      if (before_.closed) --p.replaces.end;
     }
     std::sort(out_.begin(), out_.end(), [](const Proposal& a, const Proposal& b) { return a.label < b.label; });
   }

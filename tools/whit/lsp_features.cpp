@@ -100,6 +100,7 @@ Value complete(Server& server, const Value& params) {
     Value item{{"label", p.label},
                {"kind", completion_kind(p.kind)},
                {"filterText", p.filter},
+               {"sortText", fmt::format("{:05}", items.size())},
                {"insertTextFormat", snippet ? 2 : 1},
                {"textEdit",
                 {{"range", range_of(file, p.replaces)},
