@@ -3,29 +3,11 @@
 #include <filesystem>
 #include <utility>
 
-#include "core/session/output.h"
-#include "core/session/session.h"
+#include "core/check/check.h"
 #include "parser/lexer.h"
 
 namespace whit::author {
 namespace {
-
-/// What only building a scene finds: files that cannot be read, geometry that is not what it should be.
-Diagnostics problems_of_building(PlannedWorld planned, const std::string& path) {
-  Diagnostics found;
-  if (planned.bound.film.plugin) {
-    OutputRequest request;
-    request.scene_path = path;
-    found.append(plan_output(request, planned.bound.film).said);
-  }
-  BuildOptions options;
-  options.keep_going = options.only_check = true;
-  const BuiltWorld built = build_world(std::move(planned), options);
-  found.append(built.said);
-  built.textures->read_all();
-  found.append(built.textures->errors());
-  return found;
-}
 
 /// From diagnostics to findings: places of bytes become positions.
 class Translator {
@@ -43,7 +25,7 @@ class Translator {
 
   void add(const Diagnostic& d) {
     Finding f;
-    f.severity = d.excused ? Severity::Error : d.severity;
+    f.severity = d.severity;
     f.message = d.message, f.remedy = d.remedy, f.name = d.name, f.slip = d.slip;
     const std::optional<Place> at = place(d.where);
     if (at) f.begin = at->begin, f.end = at->end;
@@ -85,19 +67,12 @@ std::string canonical_path(const std::string& path) {
 }
 
 Findings diagnose(const std::string& main_file, const std::vector<OpenText>& open, const DiagnoseOptions& options) {
-  const auto give_up = [&options] { return options.give_up && options.give_up(); };
   ReadOptions read;
   read.read_unplaced = true;
   for (const OpenText& o : open) read.unsaved.emplace_back(o.path, *o.text);
   const ParsedFile file = read_scene_file(main_file, read);
-  if (give_up()) return {};
-  std::function<Diagnostics(PlannedWorld)> further;
-  if (options.thorough) {
-    further = [&](PlannedWorld planned) {
-      return give_up() ? Diagnostics() : problems_of_building(std::move(planned), main_file);
-    };
-  }
-  const Diagnostics all = all_problems(file, further);
+  if (options.give_up && options.give_up()) return {};
+  const Diagnostics all = check_file(file, main_file, {.build = options.thorough, .give_up = options.give_up});
   Translator translator(*file.sources, canonical_path(main_file), options.encoding);
   for (const Diagnostic& d : all.all()) translator.add(d);
   return translator.take();

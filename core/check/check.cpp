@@ -77,7 +77,8 @@ Diagnostics check_file(const ParsedFile& file, const std::string& path, const Ch
     check_unsimulated(world, sink);
     if (parsed) check_definitions(world, sink);
     if (sound) check_lights(world, sink), check_instances(world, sink);
-    return options.build ? check_built(std::move(planned), path, sound, findings) : Diagnostics();
+    const bool build = options.build && !(options.give_up && options.give_up());
+    return build ? check_built(std::move(planned), path, sound, findings) : Diagnostics();
   });
   add_unexplained(findings, *file.sources, all);
 

@@ -58,9 +58,19 @@ bool lists(const Value& array, const char* word) {
   return array.is_array() && std::any_of(array.begin(), array.end(), [&](const Value& v) { return v == word; });
 }
 
+/// As the protocol numbers them; the last is information.
+int severity_number(Severity severity) {
+  switch (severity) {
+    case Severity::Error: return 1;
+    case Severity::Warning: return 2;
+    case Severity::Note: break;
+  }
+  return 3;
+}
+
 Value finding_json(const Finding& f) {
   Value out{{"range", range_json(f.begin, f.end)},
-            {"severity", f.severity == Severity::Error ? 1 : 2},
+            {"severity", severity_number(f.severity)},
             {"source", "whit"},
             {"message", f.remedy.empty() ? f.message : f.message + "\n" + f.remedy}};
   if (!f.name.empty()) out["code"] = f.name;
