@@ -76,6 +76,10 @@ class Help(Case):
                           self.good("help", statement["name"]))
         for thing in known["effects"] + known["aovs"]:
             self.assertIn(thing["name"], self.good("help", thing["name"]))
+        listed = self.good("check", "--list")
+        self.assertIn("unused-texture", listed)
+        for line in listed.splitlines():
+            self.assertIn(line.split()[0] + "\n", self.good("help", line.split()[0]))
 
     def test_whole_kinds(self):
         for one, several, name in (("statement", "statements", "LookAt"), ("effect", "effects", "depth-of-field"),

@@ -40,6 +40,14 @@ int list_findings() {
   return kDone;
 }
 
+/// For completion: what --also takes.
+std::vector<std::string> optional_findings() {
+  std::vector<std::string> names;
+  for (const FindingKind& k : finding_kinds())
+    if (!k.by_default) names.emplace_back(k.name);
+  return names;
+}
+
 /// "" or what is wrong with the flags beside what the table of flags says.
 std::string flag_problem(const CheckFlags& flags) {
   for (const auto& names : {flags.allow, flags.also}) {
@@ -89,8 +97,14 @@ int check_command(const Arguments& args) {
         &flags.format,
         "How to print it: text on stderr, JSON or SARIF 2.1.0 on stdout",
         {.choices = {"text", "json", "sarif"}}},
-       {"--allow", &flags.allow, "Leave findings of that name out; mistakes cannot be", {.repeats = true}},
-       {"--also", &flags.also, "Look for what is not looked for by default", {.repeats = true}},
+       {"--allow",
+        &flags.allow,
+        "Leave findings of that name out; mistakes cannot be",
+        {.repeats = true, .offers = names_that_can_be_allowed}},
+       {"--also",
+        &flags.also,
+        "Look for what is not looked for by default",
+        {.repeats = true, .offers = optional_findings}},
        {"--fix", &flags.fix, "Correct in the files what is beyond doubt: misspelt names"},
        {"--strict", &flags.strict, "Call everything an error, notes too"},
        {"--list", &flags.list, "List what can be found, and exit"}}};

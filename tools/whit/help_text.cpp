@@ -143,6 +143,11 @@ void print_help(Effect e) {
   print_words(fmt::format("{}; without: {}", info.doc, info.off), 19, 19);
 }
 
+void print_help_of_finding(std::string_view name, std::string_view what) {
+  fmt::print("{}\n", strong(name));
+  print_indented(what, 4);
+}
+
 std::string channels_text(const AovRow& row) {
   std::string text = row.by_light_group ? "lightgroup.NAME" : "";
   for (const std::string& channel : row.channels) {

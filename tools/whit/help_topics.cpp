@@ -2,6 +2,8 @@
 
 #include <set>
 
+#include "core/check/findings.h"
+#include "core/check/names.h"
 #include "core/plugin/registry.h"
 #include "core/render/aovs.h"
 #include "parser/statements.h"
@@ -38,6 +40,17 @@ TopicGroup aovs_group() {
   return group;
 }
 
+/// What `whit check` finds, by the names that silence it.
+TopicGroup findings_group() {
+  TopicGroup group{"finding", {"findings"}, {}, {}, false};
+  const auto add = [&group](const char* name, const char* what) {
+    group.topics.push_back({name, {}, [name, what] { print_help_of_finding(name, what); }});
+  };
+  for (const FindingKind& k : finding_kinds()) add(k.name, k.what);
+  for (const NamedWarning& w : named_warnings()) add(w.name, w.what);
+  return group;
+}
+
 /// The plugins of a category. Both kinds of textures also answer to "texture".
 TopicGroup plugins_group(const std::string& category) {
   TopicGroup group{category, {category + "s"}, {}, {}, true};
@@ -58,6 +71,7 @@ std::vector<TopicGroup> topic_groups() {
   for (const std::string& category : categories) groups.push_back(plugins_group(category));
   groups.push_back(effects_group());
   groups.push_back(aovs_group());
+  groups.push_back(findings_group());
   return groups;
 }
 
