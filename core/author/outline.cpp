@@ -40,6 +40,9 @@ std::optional<Kind> kind_of(const StatementRow& row) {
   return std::nullopt;
 }
 
+/// Nobody opens more blocks in one another by hand, and whoever shows them goes down one by one.
+constexpr size_t kDeepest = 100;
+
 bool opens(const StatementRow& row) { return row.nesting > 0 || row.name == "WorldBegin"; }
 bool closes(const StatementRow& row) { return row.nesting < 0 || row.name == "WorldEnd"; }
 
@@ -76,11 +79,17 @@ std::vector<OutlineSymbol> outline(const File& file) {
     stack.back().children.push_back(std::move(done));
   };
   uint64_t end = 0;
+  size_t too_deep = 0;  ///< Blocks that are open and not shown.
   for (const Item& item : file.index.items()) {
     end = item.at.end;
     if (!item.row) continue;
     if (closes(*item.row)) {
       const bool world = item.row->name == "WorldEnd";
+      if (world) too_deep = 0;
+      if (too_deep > 0) {
+        --too_deep;
+        continue;
+      }
       // The end of the world ends what is open in it.
       while (world && stack.size() > 1 && stack.back().kind != Kind::World) close(item.at.begin);
       if (stack.size() > 1 && (world || stack.back().kind != Kind::World)) close(end);
@@ -89,7 +98,8 @@ std::vector<OutlineSymbol> outline(const File& file) {
     const std::optional<Kind> kind = kind_of(*item.row);
     if (!kind) continue;
     OutlineSymbol symbol = symbol_of(file.text(), item, *kind);
-    if (opens(*item.row)) stack.push_back(std::move(symbol));
+    if (opens(*item.row) && stack.size() > kDeepest) ++too_deep;
+    else if (opens(*item.row)) stack.push_back(std::move(symbol));
     else stack.back().children.push_back(std::move(symbol));
   }
   while (stack.size() > 1) close(end);

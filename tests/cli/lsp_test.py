@@ -416,6 +416,12 @@ def test_manners(folder):
         c.at("hover", uri, (0, 0))
         assert len(c.errors) >= before, garbage
     assert len(c.errors) >= 7, c.errors
+    # Blocks in one another, deeper than any stack.
+    deep = c.open(os.path.join(folder, "deep.pbrt"), "WorldBegin\n" + "AttributeBegin\n" * 100000)
+    c.whole("documentSymbol", deep)
+    assert len(c.whole("semanticTokens/full", deep)["data"]) == 5 * 100001
+    c.wait_diagnostics(deep, lambda d: len(d) > 0)
+    c.close(deep)
     # In one write, so that the second is there before the first is answered.
     body = [json.dumps({"jsonrpc": "2.0", "id": 1000 + i, "method": "textDocument/semanticTokens/full",
                         "params": {"textDocument": {"uri": uri}}}).encode() for i in range(50)]
