@@ -134,11 +134,11 @@ bool FileIndex::has(std::string_view directive) const {
   return std::any_of(items_.begin(), items_.end(), [row](const Item& item) { return item.row == row; });
 }
 
-/// A statement depends on its own text and on the first word of the next, so what stands two statements before a change
-/// is as it was. Behind it, reading goes on until it comes to where a statement began before.
+/// A statement depends on its own text and on the first word of the next, which ends where nothing has changed when a
+/// third one begins before the change. Behind it, reading goes on until it comes to where a statement began before.
 void FileIndex::renew(std::string_view text, Span old, uint64_t length) {
-  const auto behind = std::upper_bound(items_.begin(), items_.end(), old.begin,
-                                       [](uint64_t o, const Item& item) { return o < item.at.begin; });
+  const auto behind = std::partition_point(items_.begin(), items_.end(),
+                                           [&old](const Item& item) { return item.at.begin < old.begin; });
   const auto kept = static_cast<size_t>(std::max<std::ptrdiff_t>(0, behind - items_.begin() - 2));
   const uint64_t start = kept < items_.size() && kept > 0 ? items_[kept].at.begin : 0;
   const uint64_t by = length - old.size();  // modulo 2^64
