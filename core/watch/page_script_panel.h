@@ -83,7 +83,8 @@ function problemElement(problem) {
   if (problem.where) parts.push(placeButton({...problem.where, file: problem.where.file}));
   parts.push(element("p", {className: "what", textContent: problem.message}));
   if (problem.excerpt) {
-    const pre = element("pre", {}), lines = problem.excerpt.replace(/\n$/, "").split("\n");
+    const pre = element("pre", {}), given = problem.excerpt.replace(/\n$/, "").split("\n");
+    const indent = Math.min(...given.map((line) => line.search(/\S|$/))), lines = given.map((line) => line.slice(indent));
     const caret = lines.length > 1 ? lines.pop() : "";
     pre.append(lines.join("\n"));
     if (caret) pre.append("\n", element("b", {textContent: caret}));

@@ -21,15 +21,15 @@ const readable = async (address) => {
 const viewOf = () => S.show === "stops" ? "" : S.view;
 const tonedBy = () => `${S.show === "stops"} ${viewOf()} ${S.exposure}`;
 
-// The bytes of a view that the server knows; the exact sRGB curve is done here.
+// The bytes of a view that the server knows; the exact sRGB curve is done here. False when it does not have the picture.
 async function toned(address, made) {
   const key = tonedBy();
-  if (made.toned === key) return;
+  if (made.toned === key) return true;
   let bytes = null;
   if (viewOf()) {
     const query = new URLSearchParams({view: viewOf(), exposure: S.exposure});
     const rgb = await readable(`${address}?${query}`);
-    if (!rgb) return;
+    if (!rgb) return false;
     bytes = spread(new Uint8Array(rgb));
   }
   bytes ||= S.show === "stops" ? stopsOf(made.words) : coloursOf(made.words);
@@ -39,6 +39,7 @@ async function toned(address, made) {
   made.canvas.height = made.height;
   made.canvas.getContext("2d").putImageData(new ImageData(bytes, made.width, made.height), 0, 0);
   made.toned = key;
+  return true;
 }
 
 function spread(rgb) {
@@ -93,18 +94,15 @@ async function update() {
         // One that is not kept any more has a successor.
         if (!numbers) { if (state.picture.number === info.number) break; again = true; continue; }
         const next = {info, words: new Uint16Array(numbers), width: info.width, height: info.height};
-        await toned("picture/" + info.number, next);
-        if (next.toned) shown = next;
-        again = state.picture.number !== info.number;
-      } else if (shown && shown.toned !== tonedBy()) {
-        const key = tonedBy(), before = shown.info.number;
-        await toned("picture/" + shown.info.number, shown);
-        if (shown.toned !== key && state.picture.number !== before) again = true;
+        if (await toned("picture/" + info.number, next)) shown = next;
+      } else if (shown && !(await toned("picture/" + shown.info.number, shown))) {
+        break;  // There will be a newer one.
       }
       await updateReference();
       redraw();
       showValues();
-      again ||= shown && shown.toned !== tonedBy() && !viewOf();
+      $("message").hidden = true;
+      again = !!shown && (shown.toned !== tonedBy() || shown.info.number !== state.picture.number);
     }
   } catch {
     // The server has gone, which the events tell too.

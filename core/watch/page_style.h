@@ -60,11 +60,11 @@ text-align:left;overflow-wrap:anywhere;cursor:pointer}
 padding:6px 16px;font-size:13.5px;max-width:calc(100% - 32px);overflow-wrap:anywhere;pointer-events:none}
 #toast[hidden]{display:none}
 #swatch{margin-left:auto}
-#values th:first-child{width:64px}
+#values th:first-child{width:84px}
 #values td{text-align:right}
 #spot{margin-top:6px;line-height:1.5;min-height:64px;color:var(--soft)}
 #spot b{color:var(--ink);font-weight:550}
-#spot div{display:grid;grid-template-columns:64px minmax(0,1fr);gap:0 8px}
+#spot div{display:grid;grid-template-columns:76px minmax(0,1fr);gap:0 8px}
 .controls label.row{display:flex;align-items:center;gap:10px;margin-bottom:9px}
 .controls select{flex:1;min-width:0;border:1px solid var(--rule);background:var(--card);border-radius:7px;padding:3px 6px;font-size:13.5px}
 #panel h3 small{font-weight:400;color:var(--soft);font-size:12px;margin-left:6px}
