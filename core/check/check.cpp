@@ -74,7 +74,6 @@ Diagnostics check_file(const ParsedFile& file, const std::string& path, const Ch
     const bool sound = parsed && !planned.said.has_errors();
     Findings sink(findings);
     check_parameters(world, sink);
-    check_unsimulated(world, sink);
     if (parsed) check_definitions(world, sink);
     if (sound) check_lights(world, sink), check_instances(world, sink);
     const bool build = options.build && !(options.give_up && options.give_up());

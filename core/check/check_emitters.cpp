@@ -1,6 +1,7 @@
 // Emitters whose lit side is covered, and lights that shine into nothing: rays from the light tell.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/box.h"
 #include "core/base/fastmath.h"
 #include "core/check/findings.h"
 #include "core/check/view_rays.h"
@@ -128,17 +130,11 @@ void check_covered(const Scene& scene, Findings& found) {
   }
 }
 
-/// Directions from a light at a point into which it may shine.
-std::vector<Vec3f> directions_of(const LightReach& reach, int count) {
+/// Directions in a cone of light.
+std::vector<Vec3f> directions_of(const LightCone& cone, int count) {
   std::vector<Vec3f> out;
   for (int i = 0; i < count; ++i) {
     const double u = (i + 0.5) / count, v = std::fmod(i * 0.6180339887498949, 1.0) * 2 * detail::kPiD;
-    if (!reach.cone) {
-      const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
-      out.emplace_back(static_cast<float>(r * std::cos(v)), static_cast<float>(r * std::sin(v)), static_cast<float>(z));
-      continue;
-    }
-    const LightCone& cone = *reach.cone;
     const Frame frame = coordinate_system(Vec3f(cone.axis));
     const double c = 1 - u * (1 - cone.cosine), s = std::sqrt(std::max(0.0, 1 - c * c));
     const Vec3f local = frame.s * static_cast<float>(s * std::cos(v)) + frame.t * static_cast<float>(s * std::sin(v)) +
@@ -173,19 +169,42 @@ bool reaches_view(const Scene& scene, const Light& light) {
   return reached;
 }
 
+/// Whether it gives light to any of the corners and the middle of a shape's box, where the shape stands in the world.
+bool reaches_boxes(const Scene& scene, const Light& light) {
+  Arena arena;
+  for (const SceneShape& shape : scene.shapes) {
+    const Box3d box = box_of(shape);
+    if (box.isEmpty()) continue;
+    const ArenaScope scope(arena);
+    constexpr int kPoints = 9;
+    LightSamples s;
+    s.n = kPoints, s.arena = &arena, s.p = arena.vec3(kPoints);
+    s.wi = arena.vec3(kPoints), s.distance = arena.floats(kPoints), s.radiance = arena.rgb(kPoints);
+    const std::array<Vec3d, 8> corners = corners_of(box);
+    for (int i = 0; i < kPoints; ++i) s.p.set(i, Vec3f(i < 8 ? corners[static_cast<size_t>(i)] : box.center()));
+    light.sample(s);
+    for (int i = 0; i < kPoints; ++i) {
+      const RGB l = s.radiance[i];
+      if (l.x != 0 || l.y != 0 || l.z != 0) return true;
+    }
+  }
+  return false;
+}
+
 void check_unreached(const Scene& scene, Findings& found) {
   size_t number = 0;
   std::map<const Light*, SourcePos> statements;
   for (const auto& bound : scene.bound.lights) statements[bound.plugin.get()] = bound.where;
   for (const SceneLight& light : scene.lights) {
-    if (light.shape >= 0 || !light.light->is_delta() || !light.light->position()) continue;
+    // One without a cone shines everywhere, and small things may stand between the rays.
+    if (light.shape >= 0 || !light.light->position() || !light.light->reach().cone) continue;
     if (++number > kMostAlike) return;
     const Vec3f at(*light.light->position());
-    const std::vector<Vec3f> directions = directions_of(light.light->reach(), 4096);
+    const std::vector<Vec3f> directions = directions_of(*light.light->reach().cone, 4096);
     const bool meets = std::any_of(directions.begin(), directions.end(), [&](const Vec3f& d) {
       return first_met(scene, at, d, std::numeric_limits<float>::infinity()).shape >= 0;
     });
-    if (meets || reaches_view(scene, *light.light)) continue;
+    if (meets || reaches_view(scene, *light.light) || reaches_boxes(scene, *light.light)) continue;
     found.add("unreached-light", statements[light.light], "this light shines where nothing is",
               "none of 4096 rays from it meets a surface");
   }

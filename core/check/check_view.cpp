@@ -37,27 +37,6 @@ Met look_around(const Scene& scene, int most, bool until_hit) {
   return met;
 }
 
-/// A scene's shapes, whatever they are made of, as boxes of their group's space.
-Box3d box_of(const SceneShape& shape) {
-  Box3d box;
-  if (shape.mesh) {
-    for (size_t i = 0; i + 2 < shape.mesh->positions.size(); i += 3)
-      box.extendBy(Vec3d(shape.mesh->positions[i], shape.mesh->positions[i + 1], shape.mesh->positions[i + 2]));
-    for (const ExactTriangle& t : shape.mesh->exact) box.extendBy(t.a), box.extendBy(t.b), box.extendBy(t.c);
-  } else if (shape.analytic) {
-    return transform_box(shape.analytic->object_to_scene(), shape.analytic->object_bounds());
-  } else if (shape.curves) {
-    Box3d local;
-    const auto& p = shape.curves->control_points;
-    for (size_t i = 0; i + 3 < p.size(); i += 4) {
-      const Vec3d middle(p[i], p[i + 1], p[i + 2]), half(static_cast<double>(p[i + 3]));
-      local.extendBy(middle - half), local.extendBy(middle + half);
-    }
-    return transform_box(shape.curves->to_group, local);
-  }
-  return box;
-}
-
 /// Whether all corners of a box are beyond one and the same side of the view.
 bool is_outside(const Box3d& box, const Mat4d& to_clip) {
   if (box.isEmpty()) return false;

@@ -14,7 +14,7 @@ const std::vector<FindingKind>& finding_kinds() {
       {"unused-medium", "A medium that no MediumInterface names."},
       {"unused-coordinate-system", "A coordinate system that nothing goes back to."},
       {"redefined-texture", "A texture that another of its name takes the place of before anything used it."},
-      {"redefined-material", "A named material whose name is given to another one."},
+      {"redefined-material", "A named material whose name is given to another one.", Severity::Warning, true, true},
       {"redefined-object", "An object whose name is given to another one."},
       {"redefined-coordinate-system", "A coordinate system that is set again before anything went back to it."},
       {"ineffective-parameter", "A parameter that says nothing beside the others of its statement."},
@@ -31,7 +31,8 @@ const std::vector<FindingKind>& finding_kinds() {
       {"singular-instance", "An object that is placed flat: its transform cannot be inverted."},
       {"mirrored-instance", "An object that is placed mirrored, which turns its writing and its handedness around.",
        Severity::Note},
-      {"not-simulated", "Something that the scene asks for and that is not simulated.", Severity::Note},
+      {"not-simulated", "Something that the scene asks for and that is not simulated, as participating media.",
+       Severity::Warning, true, true},
   };
   return table;
 }

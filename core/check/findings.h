@@ -17,6 +17,7 @@ struct FindingKind {
   const char* what;  ///< A sentence.
   Severity severity = Severity::Warning;
   bool by_default = true;
+  bool said_by_render = false;  ///< A render warns of it, and is where it comes from.
 };
 
 /// All of them, in the order of docs/check.md.
@@ -50,7 +51,6 @@ void check_definitions(const CheckedWorld& world, Findings& found);  ///< unused
 void check_parameters(const CheckedWorld& world, Findings& found);   ///< ineffective-parameter
 void check_lights(const CheckedWorld& world, Findings& found);       ///< black-light, useless-light
 void check_instances(const CheckedWorld& world, Findings& found);    ///< mirrored-instance, singular-instance
-void check_unsimulated(const CheckedWorld& world, Findings& found);  ///< not-simulated
 
 // From what was built, with rays. BoundScene::description of the scene is that of the file.
 void check_view(const Scene& scene, Findings& found);      ///< camera-inside, empty-view, outside-view

@@ -4,29 +4,35 @@
 #include <cmath>
 #include <vector>
 
+#include "core/base/box.h"
 #include "core/render/flush_denormals.h"
 #include "core/render/trace.h"
 
 namespace whit {
 namespace {
 
-/// Calls f(n, x, y) for at most kBatch pixels at a time. Returns how many there were.
+/// Calls f(n, x, y, index) for at most kBatch samples of pixels at a time: some pixels, or all with several samples each.
+/// Returns how many there were.
 template <class F>
 int for_pixels(const Vec2i& size, int most, const F& f) {
-  const double every = std::max(1.0, std::sqrt(static_cast<double>(size.x) * size.y / most));
+  const double pixels = static_cast<double>(size.x) * size.y, every = std::max(1.0, std::sqrt(pixels / most));
+  const auto samples = static_cast<uint32_t>(std::clamp(most / pixels, 1.0, 256.0));
   std::vector<int32_t> x, y;
+  std::vector<uint32_t> index;
   int count = 0;
   const auto flush = [&] {
     const int n = static_cast<int>(x.size());
     count += n;
-    const bool on = n == 0 || f(n, x.data(), y.data());
-    x.clear(), y.clear();
+    const bool on = n == 0 || f(n, x.data(), y.data(), index.data());
+    x.clear(), y.clear(), index.clear();
     return on;
   };
   for (double row = 0.5 * every; row < size.y; row += every) {
     for (double column = 0.5 * every; column < size.x; column += every) {
-      x.push_back(static_cast<int32_t>(column)), y.push_back(static_cast<int32_t>(row));
-      if (x.size() == static_cast<size_t>(kBatch) && !flush()) return count;
+      for (uint32_t k = 0; k < samples; ++k) {
+        x.push_back(static_cast<int32_t>(column)), y.push_back(static_cast<int32_t>(row)), index.push_back(k);
+        if (x.size() == static_cast<size_t>(kBatch) && !flush()) return count;
+      }
     }
   }
   flush();
@@ -38,29 +44,28 @@ int for_pixels(const Vec2i& size, int most, const F& f) {
 int for_view_rays(const Scene& scene, int most, const std::function<bool(Worker&, const Rays&, const Points&)>& look) {
   const FlushDenormals flush;
   Worker worker(scene, false);
-  const std::vector<uint32_t> first(kBatch, 0);
-  return for_pixels(scene.film().resolution(), most, [&](int n, const int32_t* x, const int32_t* y) {
-    const ArenaScope scope(worker.arena);
-    generate_camera_rays(worker, n, x, y, first.data());
-    Rays rays = worker.level(0).rays();
-    Tracer tracer(worker);
-    const Hits hits = tracer.intersect(rays);
-    const Points points = tracer.surfaces(rays, hits, Transport::Which::All);
-    const bool on = look(worker, rays, points);
-    tracer.finish();
-    worker.leave(0);
-    return on;
-  });
+  return for_pixels(scene.film().resolution(), most,
+                    [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
+                      const ArenaScope scope(worker.arena);
+                      generate_camera_rays(worker, n, x, y, index);
+                      Rays rays = worker.level(0).rays();
+                      Tracer tracer(worker);
+                      const Hits hits = tracer.intersect(rays);
+                      const Points points = tracer.surfaces(rays, hits, Transport::Which::All);
+                      const bool on = look(worker, rays, points);
+                      tracer.finish();
+                      worker.leave(0);
+                      return on;
+                    });
 }
 
 bool view_has_light(const Scene& scene, int most) {
   const FlushDenormals flush;
   Worker worker(scene, false);
-  const std::vector<uint32_t> first(kBatch, 0);
   bool lit = false;
-  for_pixels(scene.film().resolution(), most, [&](int n, const int32_t* x, const int32_t* y) {
+  for_pixels(scene.film().resolution(), most, [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
     const ArenaScope scope(worker.arena);
-    generate_camera_rays(worker, n, x, y, first.data());
+    generate_camera_rays(worker, n, x, y, index);
     trace_chunk(worker);
     for (int i = 0; i < n && !lit; ++i) {
       const RGB l = worker.chunk.radiance[i];
@@ -80,6 +85,26 @@ Meeting first_met(const Scene& scene, const Vec3f& o, const Vec3f& d, float t_ma
   scene.accel->intersect({1, lanes(origin), lanes(direction), &t_max, nullptr}, {&t, &shape, &prim, &instance, &u, &v},
                          false);
   return {shape, t};
+}
+
+Box3d box_of(const SceneShape& shape) {
+  Box3d box;
+  if (shape.mesh) {
+    for (size_t i = 0; i + 2 < shape.mesh->positions.size(); i += 3)
+      box.extendBy(Vec3d(shape.mesh->positions[i], shape.mesh->positions[i + 1], shape.mesh->positions[i + 2]));
+    for (const ExactTriangle& t : shape.mesh->exact) box.extendBy(t.a), box.extendBy(t.b), box.extendBy(t.c);
+  } else if (shape.analytic) {
+    return transform_box(shape.analytic->object_to_scene(), shape.analytic->object_bounds());
+  } else if (shape.curves) {
+    Box3d local;
+    const auto& p = shape.curves->control_points;
+    for (size_t i = 0; i + 3 < p.size(); i += 4) {
+      const Vec3d middle(p[i], p[i + 1], p[i + 2]), half(static_cast<double>(p[i + 3]));
+      local.extendBy(middle - half), local.extendBy(middle + half);
+    }
+    return transform_box(shape.curves->to_group, local);
+  }
+  return box;
 }
 
 }  // namespace whit

@@ -7,13 +7,16 @@
 
 namespace whit {
 
-/// Calls look(worker, rays, points) for batches of camera rays through pixels that are spread evenly over the picture, at
-/// most about `most` of them; `points` are where they meet surfaces, past interfaces. Stops when look() returns false.
+/// Calls look(worker, rays, points) for batches of camera rays through pixels that are spread evenly over the picture, about
+/// `most` of them at most; `points` are where they meet surfaces, past interfaces. Stops when look() returns false.
 /// Returns how many rays there were.
 int for_view_rays(const Scene& scene, int most, const std::function<bool(Worker&, const Rays&, const Points&)>& look);
 
 /// Whether any of such rays brings light, by the scene's own integrator.
 bool view_has_light(const Scene& scene, int most);
+
+/// A shape, whatever it is made of, as a box of its group's space.
+Box3d box_of(const SceneShape& shape);
 
 /// A ray from `o` along the unit vector `d`, of render space: what it meets first within `t_max`.
 struct Meeting {

@@ -29,7 +29,7 @@ def table():
     """Of each row of the list: name, severity, whether it is looked for by default."""
     rows = []
     for line in run("--list").stdout.splitlines():
-        name, severity = line[:28].strip(), line[29:44].strip()
+        name, severity = line[:28].strip(), line[29:47].strip()
         rows.append((name, severity.split(",")[0], "--also" not in severity))
     return rows
 
@@ -76,7 +76,9 @@ def all_scenes():
     paths = []
     for pattern in ("scenes/**/*.pbrt", "tests/conformance/scenes/**/*.pbrt", "tests/conformance-paths/**/*.pbrt"):
         paths += glob.glob(os.path.join(ROOT, pattern), recursive=True)
-    return sorted(os.path.relpath(p, ROOT) for p in paths)
+    # What is included is no scene.
+    paths = [os.path.relpath(p, ROOT) for p in paths]
+    return sorted(p for p in paths if "/include/" not in p and "/assets/" not in p)
 
 
 def found_everywhere():

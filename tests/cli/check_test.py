@@ -152,7 +152,7 @@ class Check(Base):
         with open(os.path.join(ROOT, "docs", "check.md"), encoding="utf-8") as f:
             page = f.read()
         for line in out.splitlines():
-            name, severity, what = line[:28].strip(), line[29:44].strip(), line[45:]
+            name, severity, what = line[:28].strip(), line[29:47].strip(), line[48:]
             row = [r for r in page.splitlines() if re.match(r"\| \[?`%s`" % re.escape(name), r)]
             self.assertEqual(len(row), 1, name)
             self.assertTrue(row[0].endswith(f"| {what} |"), row[0])

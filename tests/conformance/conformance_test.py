@@ -32,9 +32,9 @@ def scene_file(name, folder=HERE):
 
 
 def check(folder, names):
-    """What `whit check` has to say against each scene; nothing for those of which it knows everything."""
+    """What `whit check` has to say against each scene, but for a texture that one does not use; nothing for those of which it knows everything."""
     files = {n: scene_file(n, folder) for n in names}
-    done = subprocess.run([WHIT, "check", *files.values()], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+    done = subprocess.run([WHIT, "check", "--allow", "unused-texture", *files.values()], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                           timeout=60, check=False)
     if done.returncode not in (0, 1):
         raise AssertionError("whit check: exit %d\n%s" % (done.returncode, done.stderr))

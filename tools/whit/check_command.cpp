@@ -31,7 +31,7 @@ struct CheckFlags {
 int list_findings() {
   std::string out;
   const auto add = [&out](const char* name, const char* severity, const char* what) {
-    out += fmt::format("{:<28} {:<15} {}\n", name, severity, what);
+    out += fmt::format("{:<28} {:<18} {}\n", name, severity, what);
   };
   for (const FindingKind& k : finding_kinds())
     add(k.name, fmt::format("{}{}", severity_name(k.severity), k.by_default ? "" : ", with --also").c_str(), k.what);
@@ -70,7 +70,7 @@ Diagnostics for_people(const Diagnostics& found) {
   Diagnostics out;
   for (Diagnostic d : found.all()) {
     const FindingKind* kind = find_finding_kind(d.name);
-    if (kind && kind->severity == d.severity) d.message += " [" + d.name + "]";
+    if (kind && !kind->said_by_render) d.message += " [" + d.name + "]";
     out.add(std::move(d));
   }
   return out;
