@@ -16,7 +16,7 @@ namespace {
 
 /// What only building a scene finds: files that cannot be read, geometry that is not what it should be; and, where
 /// nothing is wrong, what rays tell.
-Diagnostics check_built(PlannedWorld planned, const std::string& path, bool sound, Diagnostics& findings) {
+Diagnostics check_built(PlannedWorld planned, const std::string& path, bool sound, Findings& sink) {
   Diagnostics found;
   if (planned.bound.film.plugin) {
     OutputRequest request;
@@ -31,7 +31,6 @@ Diagnostics check_built(PlannedWorld planned, const std::string& path, bool soun
   built.textures->read_all();
   found.append(built.textures->errors());
   if (!sound || found.has_errors() || !built.scene) return found;
-  Findings sink(findings);
   check_view(*built.scene, sink);
   check_emitters(*built.scene, sink);
   check_normals(*built.scene, sink);
@@ -67,17 +66,17 @@ void add_unexplained(const Diagnostics& findings, const Sources& sources, Diagno
 
 Diagnostics check_file(const ParsedFile& file, const std::string& path, const CheckOptions& options) {
   Diagnostics findings;
+  Findings sink(findings, options.asked_for);
   // Where parsing failed, statements are missing: what looks unused may be used there.
   const bool parsed = !file.said.has_errors();
   Diagnostics all = all_problems(file, [&](PlannedWorld planned) {
     const CheckedWorld world{*file.sources, *planned.bound.description, planned.bound, planned.plan};
     const bool sound = parsed && !planned.said.has_errors();
-    Findings sink(findings);
     check_parameters(world, sink);
     if (parsed) check_definitions(world, sink);
     if (sound) check_lights(world, sink), check_instances(world, sink);
     const bool build = options.build && !(options.give_up && options.give_up());
-    return build ? check_built(std::move(planned), path, sound, findings) : Diagnostics();
+    return build ? check_built(std::move(planned), path, sound, sink) : Diagnostics();
   });
   add_unexplained(findings, *file.sources, all);
 

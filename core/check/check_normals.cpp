@@ -1,5 +1,6 @@
 // Meshes whose normals and winding say different things of which side is the front.
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -33,6 +34,8 @@ double agreement(const Mesh& mesh) {
 }  // namespace
 
 void check_normals(const Scene& scene, Findings& found) {
+  const auto has_normals = [](const SceneShape& shape) { return shape.mesh && !shape.mesh->normals.empty(); };
+  if (std::none_of(scene.shapes.begin(), scene.shapes.end(), has_normals)) return;
   const SceneDescription& d = *scene.bound.description;
   std::map<std::pair<uint32_t, uint64_t>, double> handedness;
   for (const ShapeDescription& s : d.shapes) {
@@ -41,7 +44,7 @@ void check_normals(const Scene& scene, Findings& found) {
   }
   size_t count = 0;
   for (const SceneShape& shape : scene.shapes) {
-    if (!shape.mesh || shape.mesh->normals.empty()) continue;
+    if (!has_normals(shape)) continue;
     const auto statement = handedness.find({shape.where.file, shape.where.offset});
     if (statement == handedness.end()) continue;
     // A transform that mirrors turns the order of corners around, and leaves normals on their side.

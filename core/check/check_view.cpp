@@ -114,7 +114,7 @@ void check_view(const Scene& scene, Findings& found) {
     found.add("camera-inside", camera,
               "the camera is inside of something: all it sees are back sides, where no light comes");
   }
-  check_outside(scene, found);
+  if (found.wants("outside-view")) check_outside(scene, found);
 }
 
 }  // namespace whit

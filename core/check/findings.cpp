@@ -43,6 +43,11 @@ const FindingKind* find_finding_kind(std::string_view name) {
   return found == all.end() ? nullptr : &*found;
 }
 
+bool Findings::wants(std::string_view name) const {
+  const FindingKind* kind = find_finding_kind(name);
+  return (kind && kind->by_default) || std::find(asked_for_.begin(), asked_for_.end(), name) != asked_for_.end();
+}
+
 void Findings::add(const char* name, SourcePos where, std::string message, std::string remedy, SourcePos other) {
   const FindingKind* kind = find_finding_kind(name);
   if (!kind) throw std::logic_error(std::string("no kind of finding is called ") + name);

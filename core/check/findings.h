@@ -36,11 +36,15 @@ struct CheckedWorld {
 /// Takes what is found. A name that is not in the table ends the program: a mistake of the programmer's.
 class Findings {
  public:
-  explicit Findings(Diagnostics& out) : out_(out) {}
+  /// `asked_for`: names of those that are looked for though they are off by default.
+  Findings(Diagnostics& out, const std::vector<std::string>& asked_for) : out_(out), asked_for_(asked_for) {}
+  /// Whether a finding is looked for: what is dear asks before.
+  bool wants(std::string_view name) const;
   void add(const char* name, SourcePos where, std::string message, std::string remedy = {}, SourcePos other = {});
 
  private:
   Diagnostics& out_;
+  const std::vector<std::string>& asked_for_;
 };
 
 /// How often the same is said of a kind in a world before the rest is counted.
