@@ -63,7 +63,11 @@ class Reference(unittest.TestCase):
                     light = 'LightSource "point" '
                     f.write(e + " WorldBegin " + light + "WorldEnd\n" if e.startswith(OPTIONS) else
                             "WorldBegin " + light + e + " WorldEnd\n")
-            said = subprocess.run([WHIT, "check", "all.pbrt"], cwd=folder, check=False, capture_output=True, text=True)
+            # Nothing uses what the examples define, nothing is in view, and some parameters need others.
+            allow = [word for name in ("unused-texture", "unused-material", "unused-object", "unused-medium",
+                                       "unused-coordinate-system", "useless-light", "empty-view", "ineffective-parameter")
+                     for word in ("--allow", name)]
+            said = subprocess.run([WHIT, "check", "all.pbrt", *allow], cwd=folder, check=False, capture_output=True, text=True)
         problems = dict(re.findall(r"^all\.pbrt:(\d+):\d+: (error|warning)", said.stderr, re.M))
         for number, e in enumerate(examples, 1):
             self.assertEqual(str(number) in problems, "[...]" in e, e + "\n" + said.stderr)
