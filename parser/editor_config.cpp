@@ -158,6 +158,16 @@ bool matches_glob(std::string_view glob, std::string_view path) {
   return match(glob, path.substr(path.rfind('/') + 1));
 }
 
+std::string EditorConfig::line_ends(const std::string& text) const {
+  if (!crlf) return text;
+  std::string out;
+  for (const char c : text) {
+    if (c == '\n') out += '\r';
+    out += c;
+  }
+  return out;
+}
+
 EditorConfig read_editor_config(const std::string& path) {
   std::error_code failed;
   const fs::path file = fs::absolute(path, failed).lexically_normal();

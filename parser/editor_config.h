@@ -10,6 +10,9 @@ namespace whit {
 struct EditorConfig {
   std::string indent = "  ";  ///< One step of it: indent_style, indent_size and tab_width.
   bool crlf = false;          ///< end_of_line
+
+  /// A text of lines that end in \n with the ends that are wanted.
+  std::string line_ends(const std::string& text) const;
 };
 
 /// For a file, from the .editorconfig files of its folder and those above, up to one that has root = true. What is no

@@ -307,6 +307,11 @@ def test_layout(s):
     assert formatted == expected, formatted
     c.edit(s.uri, (expected,))
     assert c.whole("formatting", s.uri, options={"tabSize": 2, "insertSpaces": True}) == []
+    # As `whit fmt` does, it asks .editorconfig.
+    config = write(s.folder, ".editorconfig", "root = true\n[*.pbrt]\nindent_style = tab\n")
+    formatted = apply_edits(expected, c.whole("formatting", s.uri, options={"tabSize": 2, "insertSpaces": True}))
+    assert "\n\tTranslate 1 2 3" in formatted, formatted
+    os.remove(config)
     c.edit(s.uri, (MAIN,))
     symbols = c.whole("documentSymbol", s.uri)
     assert [x["name"] for x in symbols] == ["perspective", "image", "WorldBegin"], symbols

@@ -32,15 +32,6 @@ void remove_all(const std::vector<std::string>& written) {
   for (const std::string& path : written) std::filesystem::remove(path, ignored);
 }
 
-std::string with_crlf(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '\n') out += '\r';
-    out += c;
-  }
-  return out;
-}
-
 struct Formatted {
   int code = kDone;
   std::string before, text;
@@ -72,7 +63,7 @@ Formatted format_one(const std::string& path, FormatOptions options) {
     out.code = exit_code(d);
     return out;
   }
-  out.text = config.crlf ? with_crlf(text.str()) : text.str();
+  out.text = config.line_ends(text.str());
   return out;
 }
 

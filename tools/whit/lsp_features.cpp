@@ -12,6 +12,7 @@
 #include "core/author/hover.h"
 #include "core/author/names.h"
 #include "core/author/outline.h"
+#include "parser/editor_config.h"
 #include "parser/format.h"
 #include "tools/whit/lsp_server.h"
 
@@ -194,8 +195,11 @@ Value format(Server& server, const Value& params) {
   File& file = server.file_of(params);
   Sources sources;
   std::ostringstream text;
-  format_text(sources, file.path, file.document.text(), "", text);
-  const std::string now = text.str();
+  const EditorConfig config = read_editor_config(file.path);
+  FormatOptions options;
+  options.indent = config.indent;
+  format_text(sources, file.path, file.document.text(), "", text, options);
+  const std::string now = config.line_ends(text.str());
   const std::string_view was = file.text();
   if (now == was || now.empty()) return Value::array();
   size_t same = 0;
