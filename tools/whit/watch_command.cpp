@@ -86,8 +86,8 @@ PreviewRequest request_of(const WatchFlags& flags) {
   return request;
 }
 
-/// SIGINT, SIGTERM and SIGHUP are for wait(), in all threads that begin while this is there; afterwards they end the
-/// program, should it not end by itself.
+/// SIGINT, SIGTERM and SIGHUP are for wait() and come(), in all threads that begin while this is there. After the first a
+/// second one ends the program at once: a large scene that is being built is not left in the middle.
 class EndSignals {
  public:
   EndSignals() {
@@ -97,21 +97,26 @@ class EndSignals {
     // A page that is closed while it is answered is no reason to end.
     std::signal(SIGPIPE, SIG_IGN);
   }
-  ~EndSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  ~EndSignals() { restore(); }
   EndSignals(const EndSignals&) = delete;
   EndSignals& operator=(const EndSignals&) = delete;
 
   void wait() const {
     int which = 0;
     sigwait(&set_, &which);
+    restore();
   }
   /// Whether one has come.
   bool come() const {
     const timespec now{0, 0};
-    return sigtimedwait(&set_, nullptr, &now) > 0;
+    if (sigtimedwait(&set_, nullptr, &now) <= 0) return false;
+    restore();
+    return true;
   }
 
  private:
+  void restore() const { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
   sigset_t set_{}, before_{};
 };
 

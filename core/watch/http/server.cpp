@@ -1,6 +1,12 @@
 // The server, by cpp-httplib. GET and POST alone are answered, and no connection lives longer than its request.
 #include <httplib.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <utility>
+
 #include "core/watch/http/module.h"
 
 namespace whit {
@@ -37,8 +43,15 @@ class Server final : public HttpServer {
     if (port == 0) return std::max(server_.bind_to_any_port(kHere), 0);
     return server_.bind_to_port(kHere, port) ? port : 0;
   }
-  void run() override { server_.listen_after_bind(); }
-  void stop() override { server_.stop(); }
+  void run() override {
+    server_.listen_after_bind();
+    ended_ = true;
+  }
+  void stop() override {
+    // One that has not begun would not be stopped, and then begin.
+    while (!server_.is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    server_.stop();
+  }
 
  private:
   using Handled = httplib::Server::HandlerResponse;
@@ -96,6 +109,7 @@ class Server final : public HttpServer {
   HttpHandler handler_;
   HttpLimit limit_;
   httplib::Server server_;
+  std::atomic<bool> ended_{false};
 };
 
 std::unique_ptr<HttpServer> make(HttpHandler handler, HttpLimit limit,
