@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <mutex>
 #include <string>
+#include <utility>
 
 #include "core/accel/embree_geometry.h"
 
@@ -15,9 +17,7 @@ class AccelDevice {
   explicit AccelDevice(const std::string& config) : device_(rtcNewDevice(config.empty() ? nullptr : config.c_str())) {
     rtcSetDeviceErrorFunction(
         device_,
-        [](void* self, RTCError, const char* text) {
-          static_cast<AccelDevice*>(self)->error = text ? text : "unknown";
-        },
+        [](void* self, RTCError, const char* text) { static_cast<AccelDevice*>(self)->note(text ? text : "unknown"); },
         this);
     rtcSetDeviceMemoryMonitorFunction(
         device_,
@@ -54,17 +54,26 @@ class AccelDevice {
     return g;
   }
   /// Of what Embree was asked since the last call; "" when all went well.
-  std::string problem() const {
+  std::string problem() {
     const RTCError code = rtcGetDeviceError(device_);
+    const std::lock_guard lock(mutex_);
+    const std::string error = std::exchange(error_, {});
     if (code == RTC_ERROR_NONE && error.empty()) return {};
     return fmt::format("the ray tracer could not be built: {}", error.empty() ? "unknown error" : error);
   }
 
   std::atomic<ssize_t> bytes{0};
-  std::string error;
 
  private:
+  /// Meshes are built on several threads.
+  void note(const char* text) {
+    const std::lock_guard lock(mutex_);
+    error_ = text;
+  }
+
   RTCDevice device_;
+  std::mutex mutex_;
+  std::string error_;
 };
 
 }  // namespace whit

@@ -92,7 +92,10 @@ void build_accel(const BuildContext& context, Scene& scene) {
     scene.any_touched = find_light_ends(context, scene.lights);
     if (scene.any_touched) problem = scene.accel->watch_ends();
   }
-  if (!problem.empty()) context.diagnostics.error(context.description().world_begin, problem);
+  if (problem.empty()) return;
+  context.diagnostics.error(context.description().world_begin, problem);
+  // Which mesh it was is not known.
+  if (context.kept) context.kept->clear();
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ void load_shape(const BuildContext& context, Bound<Shape>& bound, LoadedShape& l
     if (loaded.kept) {
       loaded.bounds = loaded.kept->bounds;
       for (Diagnostic said : loaded.kept->said.all()) {
-        said.where = d.where;  // It was said of a text that is no more.
+        // They were said of a text that is no more.
+        said.where = d.where, said.other = {};
         reports.add(std::move(said));
       }
       return;

@@ -43,6 +43,9 @@ class KeptGeometry {
   std::shared_ptr<const KeptMesh> find(const std::string& key);
   void put(const std::string& key, std::shared_ptr<const KeptMesh> mesh);
 
+  /// Forgets all.
+  void clear() { meshes_.clear(); }
+
   /// How many meshes the latest build found, and how many it had to build.
   int found() const { return found_; }
   int built() const { return built_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 
@@ -109,12 +110,21 @@ std::shared_ptr<const gltf::Model> ModelStore::load(const std::string& path, con
                                                     Diagnostics& said) {
   const auto [found, is_new] = loaded_.try_emplace(path);
   Loaded& loaded = found->second;
+  loaded.used = true;
   if (is_new) {
     // Before it is read: a change meanwhile is then noticed.
     loaded.files[path] = file_state(path);
+    timespec began{};
+    ::clock_gettime(CLOCK_REALTIME_COARSE, &began);
     loaded.model = gltf::load_model(path, shown, options_, where, loaded.said);
     if (loaded.model)
-      for (const std::string& file : loaded.model->files) loaded.files.try_emplace(file, file_state(file));
+      for (const std::string& file : loaded.model->files) {
+        FileState state = file_state(file);
+        // One that has changed since then may have been read before that: it is as good as changed.
+        if (std::pair(state.seconds, state.nanoseconds) >= std::pair<int64_t, int64_t>(began.tv_sec, began.tv_nsec))
+          state = {};
+        loaded.files.try_emplace(file, state);
+      }
   }
   if (!loaded.reported) said.append(loaded.said);
   else if (!loaded.model)
@@ -126,9 +136,11 @@ std::shared_ptr<const gltf::Model> ModelStore::load(const std::string& path, con
 bool ModelStore::refresh() {
   const size_t forgotten = std::erase_if(loaded_, [](const auto& entry) {
     const Loaded& loaded = entry.second;
-    return !loaded.model || std::any_of(loaded.files.begin(), loaded.files.end(),
-                                        [](const auto& file) { return file_state(file.first) != file.second; });
+    return !loaded.model || !loaded.used || std::any_of(loaded.files.begin(), loaded.files.end(), [](const auto& file) {
+      return file_state(file.first) != file.second;
+    });
   });
+  for (auto& [path, loaded] : loaded_) loaded.used = false;
   attachments_.clear();
   notes_.clear();
   placed_ = 0;

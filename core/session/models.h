@@ -28,8 +28,8 @@ class ModelStore final : public ModelReader {
   std::optional<ModelStatements> read(const ModelRequest& request, Diagnostics& said) override;
   std::shared_ptr<const Attachment> attachment(const std::string& name) const override;
 
-  /// For another reading of the scene: forgets the models of which a file has changed since, and those with errors. False
-  /// when there were any. Attachments that were handed out stay what they are.
+  /// For another reading of the scene: forgets the models of which a file has changed since, those with errors, and those
+  /// that the last reading did not ask for. False when there were any. Attachments that were handed out stay what they are.
   bool refresh();
 
   /// A whole scene that shows a model; nothing after errors.
@@ -46,6 +46,7 @@ class ModelStore final : public ModelReader {
     std::shared_ptr<const gltf::Model> model;  ///< Null when there is an error.
     Diagnostics said;
     bool reported = false;  ///< Since begin().
+    bool used = true;       ///< Since refresh().
     std::map<std::string, FileState> files;
   };
   std::shared_ptr<const gltf::Model> load(const std::string& path, const std::string& shown, SourcePos where,

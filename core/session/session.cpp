@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "core/scene/problems.h"
@@ -104,12 +105,11 @@ Diagnostics all_problems(const ParsedFile& file, const std::function<Diagnostics
     if (!all.has_errors() && !planning.has_errors()) planning.append(find_surprises(world, planned.plan));
     if (further) found.append(further(std::move(planned)));
   }
+  // One place, one message: the parser has said what is wrong there, planning only met the consequence.
+  std::set<std::pair<uint32_t, uint64_t>> said;
+  for (const Diagnostic& d : all.all()) said.emplace(d.where.file, d.where.offset);
   for (const Diagnostic& d : planning.all()) {
-    // One place, one message: the parser has said what is wrong there, planning only met the consequence.
-    const auto same_place = [&](const Diagnostic& o) {
-      return o.where.known() && o.where.file == d.where.file && o.where.offset == d.where.offset;
-    };
-    if (std::none_of(all.all().begin(), all.all().end(), same_place)) all.add(d);
+    if (!d.where.known() || said.emplace(d.where.file, d.where.offset).second) all.add(d);
   }
   all.append(found);
   return all;

@@ -170,7 +170,8 @@ TEST(Statements, TwoMistakesAreTwoMessages) {
 }
 
 TEST(Statements, PathsAreShownToTheirEndWithAHint) {
-  const std::string folder = "/nowhere/" + std::string(200, 'a');
+  std::string folder = "/nowhere/";
+  folder.append(200, 'a');
   const Parsed parsed(in_world("Include \"geometry/missing.pbrt\""), folder);
   ASSERT_EQ(parsed.all().size(), 1u);
   EXPECT_NE(parsed.all()[0].message.find("/geometry/missing.pbrt\": No such file"), std::string::npos);
