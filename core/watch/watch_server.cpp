@@ -146,7 +146,8 @@ struct WatchServer::Impl {
 
   // ---- Requests ----
 
-  HttpReply answer(const HttpRequest& asked) {
+  /// Before anything else of it is looked at. All that is behind may rely on it.
+  std::optional<HttpReply> refusal_of(const HttpRequest& asked, size_t length) const {
     if (std::find(hosts.begin(), hosts.end(), asked.host) == hosts.end()) return refused(403, "not this host");
     const bool post = asked.method == "POST";
     if ((post || !asked.origin.empty()) && asked.origin != "http://" + asked.host)
@@ -154,8 +155,19 @@ struct WatchServer::Impl {
     if (asked.path.size() < token.size() + 2 || asked.path[0] != '/' || asked.path[token.size() + 1] != '/' ||
         !same_token(asked.path.substr(1, token.size()), token))
       return refused(404, "there is nothing here");
-    const std::string what = asked.path.substr(token.size() + 2);
-    return post ? answer_post(what, asked) : answer_get(what, asked);
+    const bool picture = post && what_of(asked) == "reference";
+    if (length > (picture ? kPicture : post ? kShort : 0)) return refused(413, "too long");
+    if (post && asked.type != (picture ? "application/octet-stream" : "application/json"))
+      return refused(415, picture ? "not a picture" : "not JSON");
+    return std::nullopt;
+  }
+
+  /// What is behind the token.
+  std::string what_of(const HttpRequest& asked) const { return asked.path.substr(token.size() + 2); }
+
+  HttpReply answer(const HttpRequest& asked) {
+    const std::string what = what_of(asked);
+    return asked.method == "POST" ? answer_post(what, asked) : answer_get(what, asked);
   }
 
   HttpReply answer_get(const std::string& what, const HttpRequest& asked) {
@@ -171,7 +183,6 @@ struct WatchServer::Impl {
 
   HttpReply answer_post(const std::string& what, const HttpRequest& asked) {
     if (what == "reference") return take_reference(asked);
-    if (asked.type != "application/json") return refused(415, "not JSON");
     if (what == "camera") {
       const std::optional<CameraWish> wish = camera_wish(asked.body);
       if (!wish) return refused(400, "not a camera");
@@ -292,7 +303,6 @@ struct WatchServer::Impl {
   }
 
   HttpReply take_reference(const HttpRequest& asked) {
-    if (asked.type != "application/octet-stream") return refused(415, "not a picture");
     const auto given = asked.query.find("name");
     const std::string name = given == asked.query.end() ? "picture" : given->second.substr(0, 200);
     const auto kept = std::make_shared<const std::string>(asked.body);
@@ -354,8 +364,8 @@ WatchServer::~WatchServer() { stop(); }
 std::string WatchServer::listen() {
   Impl& of = *impl_;
   if (!of.problem.empty()) return of.problem;
-  const auto limit = [](const std::string& path) { return path.ends_with("/reference") ? kPicture : kShort; };
-  of.http = http_module().make([&of](const HttpRequest& asked) { return of.answer(asked); }, limit,
+  const auto check = [&of](const HttpRequest& asked, size_t length) { return of.refusal_of(asked, length); };
+  of.http = http_module().make([&of](const HttpRequest& asked) { return of.answer(asked); }, check,
                                {{"Cache-Control", "no-store"},
                                 {"X-Content-Type-Options", "nosniff"},
                                 {"Referrer-Policy", "no-referrer"},

@@ -88,6 +88,42 @@ def check_posts(watcher):
                                                                  Content_Type="application/octet-stream")[2]), True)
 
 
+def check_before_the_body(watcher):
+    """Who may not ask is refused by the head of the request: nothing of a body is waited for, which is 1 MB here."""
+    good = {"Host": watcher.host, "Origin": "http://" + watcher.host, "Content-Type": "application/octet-stream"}
+    wrong = "/%s/reference" % ("0" * 32)
+    own = "/%s/reference" % watcher.token
+    for path, changed, code in ((own, {"Host": "example.com"}, 403), (own, {"Origin": "http://example.com"}, 403),
+                                (wrong, {}, 404), (own, {"Content-Type": "text/plain"}, 415)):
+        head = "POST %s HTTP/1.1\r\nContent-Length: 1000000\r\n" % path
+        head += "".join("%s: %s\r\n" % header for header in {**good, **changed}.items())
+        with socket.create_connection(("127.0.0.1", watcher.port), 30) as stream:
+            start = time.monotonic()
+            stream.sendall(head.encode() + b"\r\n")
+            answer = stream.recv(100).decode()
+            expect("before the body, %s %s" % (path, changed), answer.split(" ")[1:2], [str(code)])
+            expect("at once", time.monotonic() - start < 1.5, True)
+
+
+def check_half_sent(watcher):
+    """300 requests that are not ended hold up nobody, and are given up."""
+    streams = [socket.create_connection(("127.0.0.1", watcher.port), 30) for _ in range(300)]
+    for stream in streams:
+        stream.sendall(b"GET / HTTP/1.1\r\n")
+    start = time.monotonic()
+    expect("beside 300 half-sent requests", watcher.get("state")[0], 200)
+    expect("without waiting for them", time.monotonic() - start < 2, True)
+    for stream in streams:
+        stream.settimeout(30)
+        try:
+            while stream.recv(1000):
+                pass
+        except ConnectionResetError:
+            pass
+        stream.close()
+    expect("they are given up", time.monotonic() - start < 10, True)
+
+
 def check_port(watcher):
     expect("another address", [a for a in socket.gethostbyname_ex(socket.gethostname())[2] if not a.startswith("127.") and
                                socket.socket().connect_ex((a, watcher.port)) == 0], [])
@@ -120,6 +156,8 @@ def main():
         check_answers(watcher)
         check_refusals(watcher)
         check_posts(watcher)
+        check_before_the_body(watcher)
+        check_half_sent(watcher)
         check_port(watcher)
         check_events(watcher)
     # As soon as there is an address, whatever the threads are about.

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,8 +29,8 @@ struct HttpReply {
 
 /// Called from several threads.
 using HttpHandler = std::function<HttpReply(const HttpRequest&)>;
-/// How long the body of a request to a path may be, and its method; asked before it is read.
-using HttpLimit = std::function<size_t(const std::string& path)>;
+/// Asked before the body of a request is read, which has so many bytes: the reply to one that is not to be read at all.
+using HttpCheck = std::function<std::optional<HttpReply>(const HttpRequest&, size_t length)>;
 
 class HttpServer {
  public:
@@ -43,7 +44,7 @@ class HttpServer {
 
 /// The module's function.
 struct HttpModule {
-  std::unique_ptr<HttpServer> (*make)(HttpHandler handler, HttpLimit limit,
+  std::unique_ptr<HttpServer> (*make)(HttpHandler handler, HttpCheck check,
                                       std::vector<std::pair<std::string, std::string>> headers_of_all);
 };
 
