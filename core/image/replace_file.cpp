@@ -1,4 +1,4 @@
-#include "tools/whit/replace_file.h"
+#include "core/image/replace_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

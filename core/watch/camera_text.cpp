@@ -8,9 +8,12 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "core/image/atomic_file.h"
+#include "core/image/replace_file.h"
+#include "core/session/models.h"
 #include "parser/lexer.h"
 #include "parser/statements.h"
 #include "parser/transforms.h"
@@ -191,6 +194,14 @@ CameraEdit refused(std::string why) {
   return edit;
 }
 
+/// Unless a comment stands in what would be replaced, and would be lost. Statements of numbers have no other #.
+CameraEdit with_its_comments(const Sources& sources, CameraEdit edit) {
+  if (sources.text(edit.file).substr(edit.begin, edit.end - edit.begin).find('#') != std::string_view::npos)
+    edit.problem = fmt::format("there is a comment inside of what places the camera (line {}): put this there yourself",
+                               sources.place({edit.file, edit.begin}).line);
+  return edit;
+}
+
 }  // namespace
 
 CameraPose pose_of(const Mat4d& world_to_camera) {
@@ -214,6 +225,8 @@ Mat4d placed_at(const Mat4d& world_to_camera, const CameraPose& pose) {
 CameraEdit camera_edit(const Sources& sources, const SceneDescription& world, const Mat4d& world_to_camera,
                        const Vec3d& up) {
   if (!world.camera.where.known()) return refused(not_understood(world, {}));
+  if (is_model_text(sources.name(world.camera.where.file)))
+    return refused("the camera is of a model: there is no statement to write it into");
   const std::vector<Step> steps = steps_to(sources, world);
   if (std::string why = not_understood(world, steps); !why.empty()) return refused(std::move(why));
   CameraEdit edit;
@@ -223,7 +236,7 @@ CameraEdit camera_edit(const Sources& sources, const SceneDescription& world, co
     if (at == steps.size()) continue;
     edit.text = step_text(steps, at, world_to_camera, up);
     edit.begin = steps[at].begin, edit.end = steps[at].end;
-    if (!edit.text.empty()) return edit;
+    if (!edit.text.empty()) return with_its_comments(sources, std::move(edit));
   }
   edit.text = whole_text(world_to_camera, up);
   if (steps.empty()) {
@@ -232,11 +245,12 @@ CameraEdit camera_edit(const Sources& sources, const SceneDescription& world, co
     return edit;
   }
   edit.begin = steps.front().begin, edit.end = steps.back().end;
-  if (contiguous(steps, sources.text(edit.file))) return edit;
-  return refused(
-      fmt::format("{} statements place the camera, with others or comments between them (from line {}): put "
-                  "this in their place yourself",
-                  steps.size(), sources.place({edit.file, edit.begin}).line));
+  if (contiguous(steps, sources.text(edit.file))) return with_its_comments(sources, std::move(edit));
+  edit.problem = fmt::format(
+      "{} statements place the camera, with others or comments between them (from line {}): put this in their place "
+      "yourself",
+      steps.size(), sources.place({edit.file, edit.begin}).line);
+  return edit;
 }
 
 Vec3d up_of_camera(const Sources& sources, const SceneDescription& world) {
@@ -256,10 +270,7 @@ std::string write_edit(const Sources& sources, const CameraEdit& edit) {
   const std::string now{std::istreambuf_iterator<char>(in), {}};
   if (!in.is_open() || now != read) return fmt::format("{} is not any more what was read", path);
   const std::string text = fmt::format("{}{}{}", read.substr(0, edit.begin), edit.text, read.substr(edit.end));
-  AtomicFile out(path);
-  out.write_at(text.data(), text.size(), 0);
-  out.keep_permissions();
-  const std::string problem = out.commit();
+  const std::string problem = replace_file(path, text);
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);
 }
 

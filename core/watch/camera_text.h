@@ -26,7 +26,7 @@ struct CameraEdit {
   uint32_t file = 0;
   uint64_t begin = 0, end = 0;  ///< Bytes of the file.
   std::string text;
-  std::string problem;  ///< Why there is none, for people.
+  std::string problem;  ///< Why it cannot be written, for people. The text may be there all the same.
 };
 
 /// What makes the world's camera that of the matrix. It is the LookAt or the matrix that places it; or the only run of
@@ -37,7 +37,7 @@ CameraEdit camera_edit(const Sources& sources, const SceneDescription& world, co
 /// The up vector of the LookAt statement that places the camera by itself; that of the matrix where there is none.
 Vec3d up_of_camera(const Sources& sources, const SceneDescription& world);
 
-/// Writes it into the file, which appears complete or not at all, unless that is not any more what was read.
+/// Writes it into the file, as replace_file() does, unless that is not any more what was read.
 /// "" or why it is not written.
 std::string write_edit(const Sources& sources, const CameraEdit& edit);
 

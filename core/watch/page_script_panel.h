@@ -154,7 +154,7 @@ function showEffects() {
 function showCamera() {
   const camera = state.camera;
   $("look-at").textContent = camera.text || "…";
-  $("refusal").textContent = camera.text || !camera.refusal ? "" : camera.refusal[0].toUpperCase() + camera.refusal.slice(1) + ".";
+  $("refusal").textContent = !camera.refusal ? "" : camera.refusal[0].toUpperCase() + camera.refusal.slice(1) + ".";
   $("copy-camera").disabled = !camera.text;
   $("write-camera").disabled = !camera.moved || !!camera.refusal || state.stale;
   $("write-camera").title = camera.where ? "Replaces what stands at " + placeText(camera.where) : camera.refusal;
@@ -256,6 +256,8 @@ async function ask() {
       if (!at) { spot = null; break; }
       const answer = await fetch(`at?x=${at[0] + 0.5}&y=${at[1] + 0.5}`);
       const said = answer.ok ? await answer.json() : null;
+      // While the scene is being built, what was there stays.
+      if (said && said.busy) { setTimeout(ask, 200); break; }
       if (said) spot = {...said, x: at[0], y: at[1]};
     } while (askAgain);
   } catch {

@@ -60,7 +60,7 @@ text-align:left;overflow-wrap:anywhere;cursor:pointer}
 padding:6px 16px;font-size:13.5px;max-width:calc(100% - 32px);overflow-wrap:anywhere;pointer-events:none}
 #toast[hidden]{display:none}
 #swatch{margin-left:auto}
-#values th:first-child{width:84px}
+#values th:first-child{width:92px;white-space:nowrap}
 #values td{text-align:right}
 #spot{margin-top:6px;line-height:1.5;min-height:64px;color:var(--soft)}
 #spot b{color:var(--ink);font-weight:550}

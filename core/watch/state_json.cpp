@@ -23,11 +23,9 @@ Json of(const PreviewPicture& p) {
 }
 
 Json of(const PreviewProblem& p) {
-  return {{"error", p.is_error},
-          {"where", of(p.where)},
-          {"message", p.message},
-          {"remedy", p.remedy},
-          {"excerpt", p.excerpt}};
+  Json json{{"error", p.is_error}, {"message", p.message}, {"remedy", p.remedy}, {"excerpt", p.excerpt}};
+  if (p.where.line > 0) json["where"] = of(p.where);
+  return json;
 }
 
 Json of(const PreviewEffect& e) {
@@ -63,6 +61,8 @@ std::optional<Vec3d> vector_of(const Json& json, const char* name) {
   }
   return v;
 }
+
+bool is_length(double v) { return v > 0 && std::isfinite(v); }
 
 }  // namespace
 
@@ -103,7 +103,7 @@ std::string state_json(const std::string& scene, const PreviewState& s, const Wa
 }
 
 std::string spot_json(const PreviewSpot& s) {
-  Json json{{"known", s.known}, {"hit", s.hit}};
+  Json json{{"known", s.known}, {"busy", s.busy}, {"hit", s.hit}};
   if (s.hit) {
     json.update({{"depth", s.depth},
                  {"distance", s.distance},
@@ -125,8 +125,12 @@ std::optional<CameraWish> camera_wish(const std::string& text) {
   if (!json.is_object()) return std::nullopt;
   if (json.value("reset", Json()) == Json(true)) return CameraWish{};
   const auto eye = vector_of(json, "eye"), direction = vector_of(json, "direction"), up = vector_of(json, "up");
-  if (!eye || !direction || !up || !(direction->length() > 0) || !(up->length() > 0)) return std::nullopt;
-  return CameraWish{CameraPose{*eye, direction->normalized(), up->normalized()}};
+  if (!eye || !direction || !up || !is_length(direction->length()) || !is_length(up->length())) return std::nullopt;
+  const CameraPose pose{*eye, direction->normalized(), up->normalized()};
+  // Beyond that squares of distances are not finite in single precision; and what is up must be seen from the side.
+  constexpr double kFarthest = 1e15, kSide = 1e-6;
+  if (!(eye->length() <= kFarthest) || !(pose.direction.cross(pose.up).length() > kSide)) return std::nullopt;
+  return CameraWish{pose};
 }
 
 std::optional<EffectSet> effects_wish(const std::string& text) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -80,7 +81,7 @@ TEST(CameraText, KeepsWhatMirrorsAndScales) {
 
 TEST(CameraText, ReplacesTheLookAtAlone) {
   const std::string text =
-      moved("# before\nLookAt 0 0 -5  # eye\n  0 0 0 0 1 0  # behind\nCamera \"perspective\"\n" + kWorld, kPose);
+      moved("# before\nLookAt 0 0 -5\n  0 0 0 0 1 0  # behind\nCamera \"perspective\"\n" + kWorld, kPose);
   EXPECT_EQ(text.substr(0, 9), "# before\n");
   EXPECT_NE(text.find("  # behind\nCamera"), std::string::npos) << text;
   EXPECT_NE(text.find("LookAt 1.25 -2 3.5  "), std::string::npos) << text;
@@ -120,6 +121,10 @@ TEST(CameraText, RefusesWhatItDoesNotUnderstand) {
             std::string::npos);
   EXPECT_NE(problem("Translate 0 0 5 # far\nRotate 5 0 1 0\nCamera \"perspective\"\n" + kWorld).find("from line 1"),
             std::string::npos);
+  // A comment inside of what would be replaced.
+  for (const char* inside : {"LookAt 0 0 -5 # eye\n 0 0 0 0 1 0\n", "Transform [1 0 0 0 0 1 0 0 # here\n 0 0 1 0 0 0 5 1]\n",
+                             "Translate 0 # far\n 0 5\n"})
+    EXPECT_NE(problem(inside + std::string("Camera \"perspective\"\n") + kWorld).find("comment"), std::string::npos);
   EXPECT_NE(problem("Translate 0 0 5\nCoordinateSystem \"there\"\nIdentity\nCoordSysTransform \"there\"\nCamera "
                     "\"perspective\"\n" +
                     kWorld)
@@ -152,6 +157,19 @@ TEST(CameraText, WritesOnlyOverWhatWasRead) {
   EXPECT_EQ(get(), text + "# more\n");
   put(text);
   EXPECT_EQ(write_edit(sources, edit), "");
+  EXPECT_EQ(get(), edit.text + text.substr(edit.end));
+  // A file that may not be written, and another name of it.
+  namespace fs = std::filesystem;
+  put(text);
+  fs::permissions(path, fs::perms::owner_read);
+  EXPECT_NE(write_edit(sources, edit).find("write-protected"), std::string::npos);
+  fs::permissions(path, fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_EQ(get(), text);
+  const std::string other = test::temp_path("other.pbrt");
+  fs::remove(other);
+  fs::create_hard_link(path, other);
+  EXPECT_EQ(write_edit(sources, edit), "");
+  EXPECT_TRUE(fs::equivalent(path, other));
   EXPECT_EQ(get(), edit.text + text.substr(edit.end));
 }
 

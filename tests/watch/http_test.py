@@ -74,6 +74,9 @@ def check_posts(watcher):
     for kind in (None, "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"):
         expect("POST of %s" % kind, status(watcher, "POST", path, good, Content_Type=kind), (400, 413, 415))
     for body in (b"", b"[]", b"{", b'{"eye": [1, 2]}', b'{"eye": [1,2,3], "direction": [0,0,0], "up": [0,1,0]}',
+                 b'{"eye": [1e20,2,3], "direction": [0,0,1], "up": [0,1,0]}',
+                 b'{"eye": [1,2,3], "direction": [0,1,0], "up": [0,-2,0]}',
+                 b'{"eye": [1,2,3], "direction": [0,1e300,0], "up": [0,0,1]}',
                  b'{"eye": [1e999,2,3], "direction": [0,0,1], "up": [0,1,0]}', b"\xff\xfe", b"[" * 5000):
         expect("camera %r" % body[:30], status(watcher, "POST", path, body), 400)
     for body in (b'{"off": ["nonsense"]}', b'{"off": 1}', b'{"off": [1]}', b"{}"):

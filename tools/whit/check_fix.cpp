@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/check/edit.h"
-#include "tools/whit/replace_file.h"
+#include "core/image/replace_file.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {

@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/image/replace_file.h"
 #include "parser/editor_config.h"
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
-#include "tools/whit/replace_file.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
