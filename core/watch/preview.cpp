@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <charconv>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <filesystem>
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <new>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -52,7 +56,7 @@ struct World {
   Mat4d base;  ///< World to camera, as the file has it.
   Vec3d up;    ///< Of the file's LookAt.
   Vec2i resolution{0, 0};
-  mutable std::mutex changing;  ///< Held while the scene changes, or is looked at by others than the renderer.
+  mutable std::timed_mutex changing;  ///< Held while the scene changes, or is looked at by others than the renderer.
 
   const SceneDescription& description() const { return file->worlds.front(); }
   const Sources& sources() const { return *file->sources; }
@@ -76,6 +80,17 @@ std::string excerpt_of(const Sources& sources, const Diagnostic& d) {
   return first == std::string::npos ? "" : text.substr(first + 1);
 }
 
+/// How many problems one is about: the last of a file may say how many more there are (Reporter::finish()).
+size_t stands_for(const Diagnostic& d) {
+  constexpr std::string_view kAnd = "and ", kMore = " more ";
+  if (d.message.rfind(kAnd, 0) != 0) return 1;
+  size_t n = 0;
+  const char* const end = d.message.data() + d.message.size();
+  const auto [behind, failed] = std::from_chars(d.message.data() + kAnd.size(), end, n);
+  const std::string_view rest(behind, static_cast<size_t>(end - behind));
+  return failed == std::errc() && rest.rfind(kMore, 0) == 0 ? n : 1;
+}
+
 std::vector<PreviewProblem> problems_of(const Sources& sources, const Diagnostics& said, size_t& left_out) {
   std::vector<Diagnostic> all = said.all();
   const auto is_error = [](const Diagnostic& d) {
@@ -89,7 +104,8 @@ std::vector<PreviewProblem> problems_of(const Sources& sources, const Diagnostic
     out.push_back(
         {is_error(d), place_of(sources, d.where), d.message, d.remedy, d.where.known() ? excerpt_of(sources, d) : ""});
   }
-  left_out = all.size() - out.size();
+  left_out = 0;
+  for (size_t i = out.size(); i < all.size(); ++i) left_out += stands_for(all[i]);
   return out;
 }
 
@@ -119,6 +135,7 @@ std::vector<std::string> files_of(const std::string& path, const ParsedFile& fil
     add(model);
     for (const std::string& part : files_of_model(model)) add(part);
   }
+  for (const std::string& missing : missing_includes(*file.sources, file.said, path)) add(missing);
   std::vector<std::string> named;
   for (const SceneDescription& world : file.worlds) {
     const std::vector<std::string> more = files_read(world);
@@ -151,7 +168,14 @@ struct Preview::Impl {
     files.watch({request.path}, FileWatch::now_mark());
     watched = {request.path};
     state.files = 1;
-    worker = std::thread([this] { work(); });
+    worker = std::thread([this] {
+      work();
+      {
+        const std::lock_guard lock(mutex);
+        worked = true;
+      }
+      state_changed.notify_all();
+    });
     watcher = std::thread([this] { watch(); });
   }
 
@@ -189,7 +213,9 @@ struct Preview::Impl {
 
   void watch() {
     while (!wanted(kStop)) {
-      if (!files.wait(60'000).empty()) wish(kRead);
+      guarded([this] {
+        if (!files.wait(60'000).empty()) wish(kRead);
+      });
     }
   }
 
@@ -215,22 +241,48 @@ struct Preview::Impl {
     uint32_t todo = kRead;
     changed_at = Clock::now();
     while (!wanted(kStop)) {
-      if ((todo & (kRead | kBuild)) != 0) make_world((todo & kRead) != 0);
-      if (world && todo != 0) {
-        place_camera();
-        if (render()) finish();
-      }
+      if (!guarded([&] { do_it(todo); })) film.reset(), unfinished = false;
       todo = take_wishes(1000);
     }
   }
 
-  /// Reads if asked for, and builds. What there was stays when that fails.
-  void make_world(bool read) {
+  void do_it(uint32_t todo) {
+    const bool made = (todo & (kRead | kBuild)) != 0 && make_world((todo & kRead) != 0);
+    if (!world || todo == 0) return;
+    // What failed leaves the picture as it is; one that was not finished goes on.
+    if (made || (todo & kCamera) != 0) {
+      place_camera();
+      if (render()) finish();
+    } else if (unfinished && (film ? render_passes() : render())) {
+      finish();
+    }
+  }
+
+  /// Runs it. What it cannot do for want of memory, for example, is a problem like others: the next text may do. False then.
+  template <class Work>
+  bool guarded(const Work& work) {
+    std::string what;
+    try {
+      work();
+      return true;
+    } catch (const std::bad_alloc&) { what = "there is not enough memory"; } catch (const std::exception& e) {
+      what = e.what();
+    }
+    publish([&](PreviewState& s) {
+      s.problems = {{true, {}, "this cannot be shown: " + what, "", ""}};
+      s.problems_left_out = 0, s.stale = true, s.phase = PreviewPhase::Done;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));  // It may happen again at once.
+    return false;
+  }
+
+  /// Reads if asked for, and builds. False when that fails: what there was stays.
+  bool make_world(bool read) {
     if (read || !file) {
       set_phase(PreviewPhase::Reading);
       read_file();
     }
-    if (!file || file->said.has_errors() || file->worlds.empty()) return;
+    if (!file || file->said.has_errors() || file->worlds.empty()) return false;
     set_phase(PreviewPhase::Building);
     EffectSet now_off;
     {
@@ -242,22 +294,28 @@ struct Preview::Impl {
     PlannedWorld planned = plan_world(description, *file->sources, {.off = now_off});
     Diagnostics said = file->said;
     said.append(planned.said);
-    if (planned.said.has_errors() || !planned.bound.film.plugin) return tell(said, true);
+    if (planned.said.has_errors() || !planned.bound.film.plugin) return refuse(said);
     said.append(find_surprises(description, planned.plan));
     auto made = std::make_shared<World>();
     made->file = file;
     made->built = rebuild(std::move(planned));
     said.append(made->built.said);
-    if (said.has_errors() || !made->built.scene) return tell(said, true);
+    if (said.has_errors() || !made->built.scene) return refuse(said);
     made->base = description.transforms[static_cast<size_t>(description.camera_transform)].start;
     made->up = up_of_camera(*file->sources, description);
     made->resolution = made->built.scene->camera().film.resolution;
     take_over(std::move(made), said, building.elapsed().wall);
+    return true;
+  }
+
+  bool refuse(const Diagnostics& said) {
+    tell(said, true);
+    return false;
   }
 
   /// Meshes and textures that did not change stay what they are, and nobody looks at them meanwhile.
   BuiltWorld rebuild(PlannedWorld planned) {
-    std::unique_lock<std::mutex> lock;
+    std::unique_lock<std::timed_mutex> lock;
     if (world) lock = std::unique_lock(world->changing);
     return rebuild_world(std::move(planned), request.build, kept, request.texture_bytes);
   }
@@ -306,6 +364,7 @@ struct Preview::Impl {
   }
 
   void take_over(std::shared_ptr<World> made, const Diagnostics& said, double seconds) {
+    film.reset();
     // A camera that was moved stays where it is, until the file has another.
     {
       const std::lock_guard lock(mutex);
@@ -398,6 +457,8 @@ struct Preview::Impl {
 
   /// True when the picture is done; false when something else is wanted, or it cannot be.
   bool render() {
+    film.reset();
+    unfinished = true;
     last_picture = {};
     for (int coarse = first_coarseness(); coarse > 1; coarse = coarse > 4 ? coarse / 4 : coarse / 2) {
       // A camera that moves must show where it is: what follows the first picture may be given up, that not.
@@ -405,12 +466,16 @@ struct Preview::Impl {
       if (wanted(~0u)) return false;
     }
     if (!resize(world->resolution)) return false;
+    film = std::make_unique<FilmRender>(*world->built.scene, options_until(~0u));
+    film_samples = 0, film_seconds = 0;
     return render_passes();
   }
 
   /// Tells what textures say, if anything. Never true.
   bool failed_or_wanted() {
     if (!world->built.textures->failed()) return false;
+    film.reset();
+    unfinished = false;
     Diagnostics said = world->file->said;
     said.append(world->built.textures->errors());
     tell(said, true);
@@ -429,11 +494,11 @@ struct Preview::Impl {
     const Vec2i size = (world->resolution + Vec2i(coarse - 1, coarse - 1)) / coarse;
     if (!resize(size)) return false;
     set_phase(PreviewPhase::Rendering);
-    FilmRender film(*world->built.scene, options_until(kRead | kBuild | kStop));
+    FilmRender coarsely(*world->built.scene, options_until(kRead | kBuild | kStop));
     const auto start = Clock::now();
-    if (!film.extend(1)) return false;
+    if (!coarsely.extend(1)) return false;
     note_rate(pixels_at(coarse), seconds_since(start));
-    show(film.picture(), 1.0 / (coarse * coarse), false, seconds_since(start));
+    show(coarsely.picture(), 1.0 / (coarse * coarse), false, seconds_since(start));
     return true;
   }
 
@@ -441,21 +506,22 @@ struct Preview::Impl {
     if (samples > 500 && seconds > 0) rate = samples / seconds;
   }
 
+  /// From where they are.
   bool render_passes() {
     const auto wanted_samples = static_cast<uint32_t>(world->built.scene->samples_per_pixel);
     set_phase(PreviewPhase::Rendering);
-    FilmRender film(*world->built.scene, options_until(~0u));
-    double seconds = 0;
-    for (uint32_t samples = 0; samples < wanted_samples;) {
-      const uint32_t next = std::min(wanted_samples, samples + std::clamp<uint32_t>(samples, 1, kMostAdded));
+    while (film_samples < wanted_samples) {
+      const uint32_t next = std::min(wanted_samples, film_samples + std::clamp<uint32_t>(film_samples, 1, kMostAdded));
       const auto start = Clock::now();
-      if (!film.extend(next)) return failed_or_wanted();
+      if (!film->extend(next)) return failed_or_wanted();
       const double taken = seconds_since(start);
-      note_rate(pixels_at(1) * (next - samples), taken);
-      seconds += taken, samples = next;
-      const bool done = samples == wanted_samples;
-      if (done || seconds_since(last_picture) > kBetweenPictures) show(film.picture(), samples, done, seconds);
+      note_rate(pixels_at(1) * (next - film_samples), taken);
+      film_seconds += taken, film_samples = next;
+      const bool done = next == wanted_samples;
+      if (done || seconds_since(last_picture) > kBetweenPictures) show(film->picture(), next, done, film_seconds);
     }
+    film.reset();
+    unfinished = false;
     return true;
   }
 
@@ -520,6 +586,7 @@ struct Preview::Impl {
   PreviewState state;
   std::deque<std::shared_ptr<const PreviewPicture>> pictures;
   bool waits_ended = false;
+  bool worked = false;           ///< The worker has ended.
   std::shared_ptr<World> world;  ///< Changed by the worker alone.
 
   // The worker's own.
@@ -527,7 +594,11 @@ struct Preview::Impl {
   std::shared_ptr<ParsedFile> file;  ///< As last read, be it with errors.
   std::vector<std::string> watched;  ///< Files.
   std::map<Effect, double> costs;
-  double rate = 0;  ///< Samples a second.
+  std::unique_ptr<FilmRender> film;  ///< Of the passes that have begun, of the world.
+  uint32_t film_samples = 0;         ///< That all its pixels have.
+  double film_seconds = 0;
+  bool unfinished = false;  ///< The world's picture.
+  double rate = 0;          ///< Samples a second.
   Clock::time_point changed_at, last_picture;
   uint64_t pictures_made = 0;
 
@@ -556,6 +627,13 @@ void Preview::end_waits() {
     impl_->waits_ended = true;
   }
   impl_->state_changed.notify_all();
+}
+
+bool Preview::end(int milliseconds) {
+  end_waits();
+  impl_->wish(kStop);
+  std::unique_lock lock(impl_->mutex);
+  return impl_->state_changed.wait_for(lock, std::chrono::milliseconds(milliseconds), [&] { return impl_->worked; });
 }
 
 std::shared_ptr<const PreviewPicture> Preview::picture(uint64_t number) const {
@@ -609,7 +687,10 @@ PreviewSpot Preview::at(Vec2d film) const {
   const Scene& scene = *world->built.scene;
   LookedAt seen;
   {
-    const std::lock_guard lock(world->changing);
+    // A camera that is put somewhere else is there in no time.
+    const std::unique_lock lock(world->changing, std::chrono::milliseconds(20));
+    spot.busy = !lock.owns_lock();
+    if (spot.busy) return spot;
     const Vec2i now = scene.camera().film.resolution, whole = world->resolution;
     seen = look_at_film(scene, {film.x * now.x / whole.x, film.y * now.y / whole.y});
   }

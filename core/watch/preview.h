@@ -96,6 +96,7 @@ struct PreviewState {
 /// What is at a place of the picture.
 struct PreviewSpot {
   bool known = false;  ///< There is a scene.
+  bool busy = false;   ///< It is being built: ask again.
   bool hit = false;
   double depth = 0, distance = 0;
   Vec3d point{0, 0, 0};
@@ -115,6 +116,8 @@ class Preview {
   /// Waits until the state has another version, or for that long, or until end_waits().
   void wait_beyond(uint64_t version, int milliseconds) const;
   void end_waits();
+  /// Ends all work, which takes as long as what has been begun: true when it is over within that long.
+  bool end(int milliseconds);
   /// One of the last few pictures; null when it is not kept.
   std::shared_ptr<const PreviewPicture> picture(uint64_t number) const;
 
@@ -123,6 +126,7 @@ class Preview {
   void move_camera(const std::optional<CameraPose>& pose);
   /// "" or why the file is as it was.
   std::string write_camera();
+  /// Waits for nothing.
   PreviewSpot at(Vec2d film) const;
 
  private:

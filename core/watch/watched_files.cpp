@@ -12,12 +12,16 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <set>
+
+#include "parser/include.h"
+#include "parser/lexer.h"
 
 namespace whit {
 namespace {
@@ -57,11 +61,47 @@ std::string percent_decoded(const std::string& text) {
   return out;
 }
 
+/// The JSON of a model: the file, or the first chunk of a .glb. Discarded when it is no JSON (yet).
+nlohmann::json json_of_model(const std::string& path) {
+  std::error_code failed;
+  if (!fs::is_regular_file(path, failed)) return nlohmann::json::value_t::discarded;
+  std::ifstream in(path, std::ios::binary);
+  std::array<unsigned char, 20> head{};
+  in.read(reinterpret_cast<char*>(head.data()), head.size());
+  if (!in || std::memcmp(head.data(), "glTF", 4) != 0) {
+    in.clear();
+    in.seekg(0);
+    return nlohmann::json::parse(in, nullptr, false);
+  }
+  const size_t said = head[12] | head[13] << 8 | head[14] << 16 | static_cast<size_t>(head[15]) << 24;
+  const auto whole = static_cast<size_t>(fs::file_size(path, failed));
+  if (failed || whole < head.size() || std::memcmp(&head[16], "JSON", 4) != 0)
+    return nlohmann::json::value_t::discarded;
+  std::string text(std::min(said, whole - head.size()), '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
 }  // namespace
 
+std::vector<std::string> missing_includes(const Sources& sources, const Diagnostics& said, const std::string& path) {
+  const std::string folder = fs::path(path).parent_path().string();
+  std::vector<std::string> files;
+  for (const Diagnostic& d : said.all()) {
+    if (d.error_class != ErrorClass::File || !d.where.known()) continue;
+    const std::string_view text = sources.text(d.where.file);
+    if (d.where.offset >= text.size()) continue;
+    Diagnostics ignored;
+    Reporter reporter(ignored);
+    Lexer lexer(text.substr(d.where.offset), d.where.file, reporter);
+    if (lexer.peek().kind != TokenKind::String) lexer.next();
+    if (lexer.peek().kind == TokenKind::String) files.push_back(join_path(folder, lexer.unquote(lexer.next())));
+  }
+  return files;
+}
+
 std::vector<std::string> files_of_model(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const nlohmann::json model = nlohmann::json::parse(in, nullptr, false);
+  const nlohmann::json model = json_of_model(path);
   std::vector<std::string> files;
   if (!model.is_object()) return files;
   for (const char* list : {"buffers", "images"}) {

@@ -2,8 +2,10 @@
 """`whit watch` shows what `whit render` renders, and shows it again whenever a file that the scene is made of changes."""
 import itertools
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import numpy
 import OpenImageIO as oiio
@@ -79,6 +81,58 @@ def check_errors(watcher):
     expect("a file is gone", "body.pbrt" in state["problems"][0]["message"], True)
     write(watcher.path("body.pbrt"), BODY)
     expect("it is back", watcher.done(state["reading"] + 1)["stale"], False)
+
+
+def check_many_errors(watcher):
+    """50 are told, and how many more there are: 300 in all."""
+    state = watcher.done()
+    write(watcher.path("body.pbrt"), 'Shape "sphere" "float radius" "x"\n' * 300)
+    state = watcher.wait_for(lambda s: s["stale"])
+    expect("many errors", [len(state["problems"]), state["problems_left_out"]], [50, 250])
+    write(watcher.path("body.pbrt"), BODY)
+    watcher.done(state["reading"] + 1)
+
+
+def check_missing_include():
+    """An include that has never been there is waited for."""
+    with Watcher(scene=SCENE.replace("body.pbrt", "later.pbrt")) as watcher:
+        state = watcher.wait_for(lambda s: s["stale"])
+        write(watcher.path("later.pbrt"), BODY)
+        expect("it is there", watcher.done(state["reading"] + 1)["stale"], False)
+        os.remove(watcher.path("scene.pbrt"))
+        state = watcher.wait_for(lambda s: s["stale"])
+        expect("no scene, no place", "where" in state["problems"][0], False)
+
+
+def check_refines_beside_an_error():
+    """A mistake in the text neither throws the picture away nor ends its refinement."""
+    with Watcher(scene=SCENE.replace("pixelsamples\" 4", "pixelsamples\" 65536")) as watcher:
+        state = watcher.wait_for(lambda s: s["samples"] >= 4)
+        write(watcher.path("body.pbrt"), "Shpae\n")
+        stale = watcher.wait_for(lambda s: s["stale"])
+        expect("the picture stays", stale["samples"] >= state["samples"], True)
+        later = watcher.wait_for(lambda s: s["samples"] > stale["samples"])
+        expect("it goes on beside the mistake", later["stale"], True)
+    # One that is finished stays finished.
+    with Watcher() as watcher:
+        number = watcher.done()["picture"]["number"]
+        write(watcher.path("body.pbrt"), "Shpae\n")
+        stale = watcher.wait_for(lambda s: s["stale"] and s["phase"] == "done")
+        time.sleep(0.5)
+        expect("no other picture", watcher.state()["picture"]["number"], number)
+
+
+def check_ends_while_it_works():
+    """A million spheres take seconds to read and to build; a signal ends it in a moment all the same."""
+    scene = SCENE.replace('Include "body.pbrt"', 'Shape "sphere" "float radius" 1\n' * 1000000)
+    for phase in ("reading", "building"):
+        with Watcher(scene=scene) as watcher:
+            try:
+                watcher.wait_for(lambda s, phase=phase: s["phase"] in (phase, "rendering", "done"))
+            finally:
+                start = time.monotonic()
+                expect("a signal while " + phase, watcher.end(signal.SIGINT), 0)
+                expect("in a moment", time.monotonic() - start < 3, True)
 
 
 def check_effects(watcher):
@@ -239,8 +293,11 @@ def main():
         write(watcher.path("body.pbrt"), BODY)
         watcher.wait_for(lambda s: s["phase"] == "done" and s["camera"]["text"].startswith("LookAt"))
     with Watcher() as watcher:
-        for check in (check_errors, check_effects, check_spot, check_camera, check_views):
+        for check in (check_errors, check_many_errors, check_effects, check_spot, check_camera, check_views):
             check(watcher)
+    check_missing_include()
+    check_refines_beside_an_error()
+    check_ends_while_it_works()
     check_files()
     check_terminal()
     usage = subprocess.run([WHIT, "watch"], capture_output=True, check=False)

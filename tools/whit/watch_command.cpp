@@ -1,15 +1,18 @@
 // `whit watch`: a scene on a page, or in the terminal, while it is written.
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <pthread.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
+#include <thread>
 
 #include "core/watch/preview.h"
 #include "core/watch/watch_server.h"
@@ -120,17 +123,40 @@ class EndSignals {
   sigset_t set_{}, before_{};
 };
 
+/// In a process group of its own, which Ctrl-C here does not end, and with signals as any program expects them.
 void open_browser(const std::string& address) {
   std::string program = "xdg-open", page = address;
   std::array<char*, 3> args{program.data(), page.data(), nullptr};
   pid_t child = 0;
   posix_spawn_file_actions_t quiet;
   posix_spawn_file_actions_init(&quiet);
-  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", 1, 0);
+  posix_spawn_file_actions_addopen(&quiet, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&quiet, STDOUT_FILENO, STDERR_FILENO);
-  if (posix_spawnp(&child, program.c_str(), &quiet, nullptr, args.data(), environ) != 0)
+  sigset_t none, plain;
+  sigemptyset(&none);
+  sigemptyset(&plain);
+  for (const int s : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) sigaddset(&plain, s);
+  posix_spawnattr_t as_usual;
+  posix_spawnattr_init(&as_usual);
+  posix_spawnattr_setsigmask(&as_usual, &none);
+  posix_spawnattr_setsigdefault(&as_usual, &plain);
+  posix_spawnattr_setpgroup(&as_usual, 0);
+  posix_spawnattr_setflags(&as_usual, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  if (posix_spawnp(&child, program.c_str(), &quiet, &as_usual, args.data(), environ) != 0)
     say("whit watch: there is no xdg-open; open the address yourself");
+  else std::thread([child] { ::waitpid(child, nullptr, 0); }).detach();
+  posix_spawnattr_destroy(&as_usual);
   posix_spawn_file_actions_destroy(&quiet);
+}
+
+/// Ends the preview, or the program: a large scene that is being built cannot be stopped in the middle, and nothing of it is
+/// kept.
+int ended(Preview& preview, int code) {
+  constexpr int kMoment = 300;
+  if (preview.end(kMoment)) return code;
+  std::fflush(nullptr);
+  ::_exit(code);
 }
 
 }  // namespace
@@ -152,7 +178,7 @@ int watch_command(const Arguments& args) {
   Preview preview(request_of(flags));
   if (flags.terminal) {
     const WatchTerminal terminal{flags.graphics, flags.view, flags.ocio, [&signals] { return signals.come(); }};
-    return watch_in_terminal(preview, terminal);
+    return ended(preview, watch_in_terminal(preview, terminal));
   }
   WatchServer server(preview, {flags.port, flags.reference, flags.view, flags.ocio});
   if (const std::string problem = server.listen(); !problem.empty()) {
@@ -165,7 +191,7 @@ int watch_command(const Arguments& args) {
   if (flags.open) open_browser(server.address());
   signals.wait();
   server.stop();
-  return kDone;
+  return ended(preview, kDone);
 }
 
 }  // namespace whit
