@@ -101,7 +101,6 @@ async function update() {
       await updateReference();
       redraw();
       showValues();
-      $("message").hidden = true;
       again = !!shown && (shown.toned !== tonedBy() || shown.info.number !== state.picture.number);
     }
   } catch {
@@ -168,6 +167,7 @@ function draw() {
   const at = [left, top].map((v) => Math.round(v * ratio));
   const size = S.zoom === 1 / ratio || Number.isInteger(S.zoom * ratio)
       ? [(x1 - x0) * S.zoom * ratio, (y1 - y0) * S.zoom * ratio] : [right * ratio - at[0], bottom * ratio - at[1]];
+  $("message").hidden = true;
   pen.drawImage(made.canvas, at[0], at[1], size[0], size[1]);
   $("zoom").textContent = Math.round(S.zoom * 1000) / 10 + " %";
 }
