@@ -43,9 +43,10 @@ std::string swatch(const std::string& hex) {
 
 std::string colour_text(const RGB& c) {
   const std::string hex = srgb_hex(c);
-  const double scale = shown(c).scale;
+  // Not where it would be said to be 1.
+  const std::string scale = fmt::format("{:.4g}", shown(c).scale);
   return fmt::format("{} linear RGB {:.4g} {:.4g} {:.4g}, sRGB `{}`{}", swatch(hex), c.x, c.y, c.z, hex,
-                     scale > 1 ? fmt::format(" times {:.4g}", scale) : "");
+                     shown(c).scale > 1 && scale != "1" ? " times " + scale : std::string());
 }
 
 class Hoverer {

@@ -17,6 +17,7 @@ int look_up(const std::unordered_map<std::string, int>& names, const std::string
 enum class Does : uint8_t {
   Nothing,
   Transform,
+  Activate,
   BeginAttribute,
   EndAttribute,
   BeginTransform,
@@ -40,7 +41,7 @@ Does what_does(const StatementRow* row) {
         {"LookAt", Does::Transform},
         {"Transform", Does::Transform},
         {"ConcatTransform", Does::Transform},
-        {"ActiveTransform", Does::Transform},
+        {"ActiveTransform", Does::Activate},
         {"AttributeBegin", Does::BeginAttribute},
         {"AttributeEnd", Does::EndAttribute},
         {"ObjectBegin", Does::BeginAttribute},
@@ -66,7 +67,8 @@ Does what_does(const StatementRow* row) {
 class Accumulator {
  public:
   /// False where the statement makes no matrix.
-  bool apply(const Statement& s) {
+  bool apply(const Statement& s, bool start, bool end) {
+    start_ = start, end_ = end;
     const auto three = [&](size_t i) { return Vec3d(s.numbers[i], s.numbers[i + 1], s.numbers[i + 2]); };
     const std::string_view name = s.row->name;
     if (name == "Identity") return change(Mat4d(), false);
@@ -76,10 +78,6 @@ class Accumulator {
     if (name == "LookAt") {
       const std::optional<Mat4d> m = looking_at(three(0), three(3), three(6));
       return m && change(*m, true);
-    }
-    if (name == "ActiveTransform") {
-      start_ = s.word != "EndTime", end_ = s.word != "StartTime";
-      return true;
     }
     Mat4d m;
     for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = s.numbers[static_cast<size_t>(i)];
@@ -164,12 +162,12 @@ void Scope::mention(const MentionAt& at) {
 }
 
 void Scope::step(Step::Kind kind, ItemAt at) {
-  steps_.push_back({transform_, kind, at});
+  steps_.push_back({transform_, kind, at, active_});
   transform_ = static_cast<int>(steps_.size()) - 1;
 }
 
 void Scope::begin_graphics() {
-  saved_transforms_.push_back(transform_);
+  save_transforms();
   saved_.push_back({state_, undo_.size()});
 }
 
@@ -183,9 +181,19 @@ void Scope::end_graphics() {
   }
   state_ = saved_.back().state;
   saved_.pop_back();
+  restore_transforms();
+}
+
+void Scope::restore_transforms() {
   if (saved_transforms_.empty()) return;
-  transform_ = saved_transforms_.back();
+  transform_ = saved_transforms_.back().transform, active_ = saved_transforms_.back().active;
   saved_transforms_.pop_back();
+}
+
+void Scope::activate(const ItemAt& at) {
+  Statement s;
+  if (!read_at(at.file->text(), at.file->index.items()[at.item].at.begin, s)) return;
+  active_ = {s.word != "EndTime", s.word != "StartTime"};
 }
 
 size_t Scope::first_mention(const File& file, const Item& item) {
@@ -208,7 +216,7 @@ void Scope::end_world() {
   system_transforms_.clear();
   undo_.clear(), saved_.clear(), saved_transforms_.clear();
   state_ = State();
-  transform_ = -1;
+  transform_ = -1, active_ = {};
   in_world_ = false;
 }
 
@@ -228,14 +236,11 @@ void Scope::apply(File& file, size_t item) {
   switch (does) {
     case Does::Transform: step(Step::Kind::Statement, at); break;
     case Does::EndAttribute: end_graphics(); break;
-    case Does::BeginTransform: saved_transforms_.push_back(transform_); break;
-    case Does::EndTransform:
-      if (saved_transforms_.empty()) break;
-      transform_ = saved_transforms_.back();
-      saved_transforms_.pop_back();
-      break;
+    case Does::BeginTransform: save_transforms(); break;
+    case Does::EndTransform: restore_transforms(); break;
+    case Does::Activate: activate(at); break;
     case Does::BeginWorld:
-      transform_ = -1;
+      transform_ = -1, active_ = {};
       system_transforms_["world"] = -1;
       in_world_ = true;
       break;
@@ -275,7 +280,8 @@ std::optional<TransformPair> Scope::transforms() const {
   for (auto step = steps.rbegin(); step != steps.rend(); ++step) {
     const ItemAt& at = (*step)->at;
     if ((*step)->kind == Step::Kind::Invert) all.invert();
-    else if (!read_at(at.file->text(), at.file->index.items()[at.item].at.begin, s) || !all.apply(s))
+    else if (!read_at(at.file->text(), at.file->index.items()[at.item].at.begin, s) ||
+             !all.apply(s, (*step)->active.start, (*step)->active.end))
       return std::nullopt;
   }
   return all.both();

@@ -54,11 +54,21 @@ class Scope {
 
  private:
   using Names = std::unordered_map<std::string, int>;
+  /// Which of the two transforms statements change.
+  struct Active {
+    bool start = true, end = true;
+  };
+  /// Those in force between a begin and its end; a system of coordinates is the transforms alone.
+  struct SavedTransforms {
+    int transform = -1;
+    Active active;
+  };
   /// The transforms in force are those of a statement behind others.
   struct Step {
     int before = -1;
     enum class Kind : uint8_t { Statement, Invert } kind = Kind::Statement;
     ItemAt at;
+    Active active;
   };
   struct State {
     std::optional<ItemAt> material;
@@ -76,6 +86,9 @@ class Scope {
   void mention(const MentionAt& at);
   void use(const MentionAt& at);
   void step(Step::Kind kind, ItemAt at);
+  void save_transforms() { saved_transforms_.push_back({transform_, active_}); }
+  void restore_transforms();
+  void activate(const ItemAt& at);
   void begin_graphics();
   void end_graphics();
   void end_world();
@@ -91,10 +104,11 @@ class Scope {
   std::vector<size_t> media_uses_;
   std::vector<Undo> undo_;
   std::vector<Saved> saved_;
-  std::vector<int> saved_transforms_;
+  std::vector<SavedTransforms> saved_transforms_;
   State state_;
   std::vector<Step> steps_;
   int transform_ = -1;
+  Active active_;
   const File* last_file_ = nullptr;  ///< Where the mentions of the next statement probably are.
   size_t next_mention_ = 0;
 };
