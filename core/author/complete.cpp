@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/author/names.h"
 #include "core/author/scope.h"
 #include "core/author/vocabulary.h"
 #include "parser/lexer.h"
@@ -206,8 +207,9 @@ class Completer {
   Proposal& add_string(Proposal::Kind kind, const std::string& label, const std::string& value, std::string detail,
                        std::string doc) {
     Proposal& p = add(kind, label, std::move(detail), std::move(doc));
-    p.text = (before_.in_string ? "" : "\"") + value + "\"";
-    p.filter = (before_.in_string ? "" : "\"") + value;
+    const std::string opening = before_.in_string ? "" : "\"";
+    p.text = opening + escaped(value) + "\"";
+    p.filter = opening + escaped(value);
     return p;
   }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/check/check.h"
+#include "core/check/edit.h"
 #include "parser/lexer.h"
 
 namespace whit::author {
@@ -33,6 +34,10 @@ class Translator {
     if (const std::string where = sources_.location(d.where); !at && !where.empty())
       f.message = where + ": " + f.message;
     f.other = place(d.other);
+    if (const std::optional<Edit> edit = at ? edit_of(sources_, d) : std::nullopt) {
+      const Document& document = documents_.at(edit->file);
+      f.word = {document.position(edit->begin), document.position(edit->end)};
+    }
     findings_[at ? at->path : main_].push_back(std::move(f));
   }
 
@@ -69,6 +74,8 @@ std::string canonical_path(const std::string& path) {
 Findings diagnose(const std::string& main_file, const std::vector<OpenText>& open, const DiagnoseOptions& options) {
   ReadOptions read;
   read.read_unplaced = true;
+  // A file that is mapped and rewritten in place meanwhile would end the server.
+  read.copy_files = true;
   for (const OpenText& o : open) read.unsaved.emplace_back(o.path, *o.text);
   const ParsedFile file = read_scene_file(main_file, read);
   if (options.give_up && options.give_up()) return {};

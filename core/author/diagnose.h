@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/author/document.h"
@@ -25,6 +26,7 @@ struct Finding {
   Position begin, end;
   std::string message, remedy, name;
   Slip slip;
+  std::optional<std::pair<Position, Position>> word;  ///< Where what the slip corrects begins and ends.
   std::optional<Place> other;
 };
 

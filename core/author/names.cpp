@@ -128,6 +128,21 @@ std::vector<SpanAt> references_at(Workspace& workspace, File& file, uint64_t off
   return out;
 }
 
+bool is_taken(Workspace& workspace, File& file, NameKind kind, const std::string& name) {
+  const auto texture = [](NameKind k) {
+    return k == NameKind::FloatTexture || k == NameKind::ColourTexture || k == NameKind::AnyTexture;
+  };
+  // These two are there without a statement that makes them.
+  if (kind == NameKind::CoordinateSystem && (name == "world" || name == "camera")) return true;
+  const std::vector<File*> files = workspace.files_of(*workspace.main_of(file));
+  return std::any_of(files.begin(), files.end(), [&](const File* f) {
+    const std::vector<Mention>& all = f->index.mentions();
+    return std::any_of(all.begin(), all.end(), [&](const Mention& m) {
+      return m.name == name && (m.kind == kind || (texture(m.kind) && texture(kind)));
+    });
+  });
+}
+
 std::string why_no_name(const std::string& name) {
   if (name.empty()) return "a name has at least one character";
   if (std::any_of(name.begin(), name.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }))

@@ -31,6 +31,8 @@ std::vector<SpanAt> references_at(Workspace& workspace, File& file, uint64_t off
 /// The text of a mention between its quotes.
 Span inside(const Mention& mention);
 
+/// Whether the scene of a file has this name already for something of a kind: what is renamed to it would mean that.
+bool is_taken(Workspace& workspace, File& file, NameKind kind, const std::string& name);
 /// Why a name cannot be called so, or "".
 std::string why_no_name(const std::string& name);
 /// A name as it stands between quotes.

@@ -42,13 +42,11 @@ File& Workspace::open(const std::string& path, const std::string& uri, std::stri
 }
 
 void Workspace::replace(File& file, std::string text) {
-  ++generation_;
   file.document = Document(std::move(text), encoding);
   file.index = FileIndex(file.text());
 }
 
 void Workspace::change(File& file, Position begin, Position end, std::string_view text) {
-  ++generation_;
   const uint64_t from = file.document.offset(begin);
   const Span old{from, std::max(from, file.document.offset(end))};
   file.document.replace(old, text);
@@ -78,7 +76,13 @@ File* Workspace::read(const std::string& path) {
 File* Workspace::find(const std::string& path) {
   const std::string& name = canonical(path);
   const auto found = files_.find(name);
-  return found != files_.end() && found->second->open ? found->second.get() : read(name);
+  return found != files_.end() && found->second->open ? found->second.get() : look_at(name);
+}
+
+File* Workspace::look_at(const std::string& path) {
+  const auto [found, fresh] = looked_at_.try_emplace(path);
+  if (fresh) found->second = read(path);
+  return found->second;
 }
 
 std::vector<File*> Workspace::open_files() {
@@ -184,10 +188,13 @@ File* Workspace::main_of(File& file) {
         return remember(*other);
     }
     if (!whole) break;
-    if (alone_.count(file.path) != 0) continue;
+    // Which files there are is asked once, until some may have come or gone.
+    if (!alone_.insert(file.path).second) continue;
     for (const std::string& path : candidates(file)) {
       File* other = find(path);
-      if (other && other->index.begins_world() && includes(*other, file)) return remember(*other);
+      if (!other || !other->index.begins_world() || !includes(*other, file)) continue;
+      alone_.erase(file.path);
+      return remember(*other);
     }
   }
   return &file;

@@ -57,14 +57,15 @@ class Workspace {
   /// All files of a scene, each once.
   std::vector<File*> files_of(File& main);
 
-  /// Files on the disk may have changed, or come and gone.
-  void refresh() { canonical_.clear(), alone_.clear(), ++generation_; }
+  /// Files on the disk may have come and gone.
+  void refresh() { canonical_.clear(), alone_.clear(), look_again(); }
 
-  /// Changes whenever a text does.
-  uint64_t generation() const { return generation_; }
+  /// The disk is looked at once for each file until this is called, so that none changes while somebody goes through it.
+  void look_again() { looked_at_.clear(); }
 
  private:
   bool walk_file(const File& main, File& file, const Visit& visit, std::vector<const File*>& reading);
+  File* look_at(const std::string& canonical);
   File* read(const std::string& canonical);
   bool includes(File& main, const File& wanted);
   std::vector<std::string> candidates(const File& file) const;
@@ -74,7 +75,7 @@ class Workspace {
   std::unordered_map<std::string, std::string> canonical_;
   std::unordered_map<std::string, std::string> main_of_;  ///< Found before.
   std::set<std::string> alone_;                           ///< Files for which none was found on the disk.
-  uint64_t generation_ = 0;
+  std::unordered_map<std::string, File*> looked_at_;      ///< On the disk; null where there is none.
 };
 
 }  // namespace whit::author

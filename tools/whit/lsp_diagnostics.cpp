@@ -77,7 +77,7 @@ void DiagnosticsWorker::run(bool thorough) {
       findings = author::diagnose(main, snapshot.texts, options);
     } catch (const std::exception& e) {
       // Such as memory that ran out: of this text nothing more is known.
-      findings[main].push_back({Severity::Error, {}, {}, e.what(), {}, {}, {}, {}});
+      findings[main].push_back({Severity::Error, {}, {}, e.what(), {}, {}, {}, {}, {}});
     }
     lock.lock();
     const auto found = scenes_.find(main);

@@ -176,6 +176,8 @@ Value rename(Server& server, const Value& params) {
   if (const std::string why = author::why_no_name(name); !why.empty())
     throw RequestError{ErrorCode::InvalidParams, why};
   author::Symbol symbol = renamed(server, file, offset_of(file, params));
+  if (name != symbol.name && author::is_taken(server.workspace, file, symbol.kind, name))
+    throw RequestError{ErrorCode::RequestFailed, fmt::format("\"{}\" is the name of something else here", name)};
   std::vector<author::MentionAt> all = std::move(symbol.definitions);
   all.insert(all.end(), symbol.uses.begin(), symbol.uses.end());
   std::vector<std::pair<File*, Value>> edits;
@@ -210,7 +212,10 @@ Value format(Server& server, const Value& params) {
          now[now.size() - 1 - tail] == was[was.size() - 1 - tail])
     ++tail;
   // From the beginning of a line, so that no character and no \r\n is taken apart.
-  while (tail > 0 && (now[now.size() - 1 - tail] != '\n' || was[was.size() - 1 - tail] != '\n')) --tail;
+  const auto begins_line = [&tail](std::string_view text) {
+    return tail == text.size() || text[text.size() - 1 - tail] == '\n';
+  };
+  while (tail > 0 && !(begins_line(now) && begins_line(was))) --tail;
   return Value::array({{{"range", range_of(file, {same, was.size() - tail})},
                         {"newText", now.substr(same, now.size() - tail - same)}}});
 }
@@ -337,11 +342,10 @@ Value present_colour(Server& server, const Value& params) {
 
 /// The word that a slip corrects, where it is still there.
 std::optional<Span> slip_span(const File& file, const author::Finding& f) {
-  if (!f.slip.known() || f.slip.written.empty()) return std::nullopt;
-  const uint64_t begin = file.document.offset(f.begin), end = file.document.offset(f.end);
-  const size_t at = file.text().substr(begin, end - begin).find(f.slip.written);
-  if (at == std::string_view::npos) return std::nullopt;
-  return Span{begin + at, begin + at + f.slip.written.size()};
+  if (!f.word) return std::nullopt;
+  const Span at{file.document.offset(f.word->first), file.document.offset(f.word->second)};
+  if (at.end < at.begin || file.text().substr(at.begin, at.size()) != f.slip.written) return std::nullopt;
+  return at;
 }
 
 Value slip_edit(const File& file, Span at, const Slip& slip) {

@@ -162,12 +162,13 @@ void Server::handle(const Value& message, bool is_cancelled) {
     return refuse({ErrorCode::MethodNotFound, "there is no method " + name});
   if (is_cancelled) return refuse({ErrorCode::RequestCancelled, "cancelled"});
   try {
+    workspace.look_again();
     static const Value none = Value::object();
     const auto params = message.find("params");
     Value result = found->second.handle(*this, params == message.end() ? none : *params);
     if (is_request) writer_.answer(id, std::move(result));
-  } catch (const RequestError& error) { refuse(error); } catch (const Value::exception& e) {
-    refuse({ErrorCode::InvalidParams, e.what()});
+  } catch (const RequestError& error) { refuse(error); } catch (const Value::exception&) {
+    refuse({ErrorCode::InvalidParams, "the parameters of " + name + " are not as the protocol has them"});
   } catch (const std::exception& e) { refuse({ErrorCode::InternalError, e.what()}); }
 }
 

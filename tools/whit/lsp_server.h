@@ -32,7 +32,6 @@ struct Client {
   bool snippets = false;
   bool markdown = false;
   bool nested_symbols = false;
-  bool prepare_rename = false;
   bool document_changes = false;
 };
 

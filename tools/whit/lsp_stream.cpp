@@ -12,7 +12,9 @@
 namespace whit::lsp {
 namespace {
 
-constexpr size_t kLongestHeader = 4096, kLargestMessage = size_t{1} << 30;
+constexpr size_t kLongestHeader = 4096, kLargestMessage = size_t{1} << 28;
+/// A length beyond this is no length, and what follows is not skipped.
+constexpr size_t kLargestSkipped = size_t{1} << 32;
 
 /// The value of a header of this name (its case does not matter), or nothing.
 std::optional<std::string_view> header_value(std::string_view line, std::string_view name) {
@@ -30,7 +32,7 @@ std::optional<std::string_view> header_value(std::string_view line, std::string_
 std::optional<size_t> number(std::string_view text) {
   size_t value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value > kLargestMessage) return std::nullopt;
+  if (error != std::errc() || end != text.data() + text.size() || value > kLargestSkipped) return std::nullopt;
   return value;
 }
 
@@ -76,14 +78,24 @@ bool MessageReader::read_bytes(size_t count, std::string& out) {
   return true;
 }
 
-/// In what is no header it goes on line by line to the next one, having said so once.
-std::optional<Incoming> MessageReader::read() {
+bool MessageReader::skip_bytes(size_t count) {
+  while (buffer_.size() - used_ < count) {
+    count -= buffer_.size() - used_;
+    used_ = buffer_.size();
+    if (!fill()) return false;
+  }
+  used_ += count;
+  return true;
+}
+
+/// The length of the message behind a header; nothing where there is no header.
+std::optional<size_t> MessageReader::read_header(bool& ended) {
   std::optional<size_t> length;
   bool garbage = false, too_long = false;
   std::string line;
   for (;;) {
-    if (!read_line(line, too_long)) return std::nullopt;
-    if (line.empty() && (length || garbage)) break;
+    ended = !read_line(line, too_long);
+    if (ended || (line.empty() && (length || garbage))) return length;
     if (line.empty()) continue;
     if (const auto value = header_value(line, "content-length"); value && !too_long) {
       length = number(*value);
@@ -92,16 +104,29 @@ std::optional<Incoming> MessageReader::read() {
       garbage = garbage || !length;
     }
   }
-  if (!length) {
-    if (std::exchange(lost_, true)) return read();
-    return problem(ErrorCode::ParseError, "a message begins with a header \"Content-Length: N\"");
+}
+
+/// In what is no header it goes on line by line to the next one, having said so once.
+std::optional<Incoming> MessageReader::read() {
+  for (;;) {
+    bool ended = false;
+    const std::optional<size_t> length = read_header(ended);
+    if (ended) return std::nullopt;
+    if (!length) {
+      if (std::exchange(lost_, true)) continue;
+      return problem(ErrorCode::ParseError, "a message begins with a header \"Content-Length: N\"");
+    }
+    lost_ = false;
+    if (*length > kLargestMessage) {
+      if (!skip_bytes(*length)) return std::nullopt;
+      return problem(ErrorCode::InvalidRequest, "the message has more than 256 MiB");
+    }
+    std::string body;
+    if (!read_bytes(*length, body)) return std::nullopt;
+    Value message = Value::parse(body, nullptr, false);
+    if (message.is_discarded()) return problem(ErrorCode::ParseError, "the message is not JSON");
+    return Incoming{std::move(message), std::nullopt};
   }
-  lost_ = false;
-  std::string body;
-  if (!read_bytes(*length, body)) return std::nullopt;
-  Value message = Value::parse(body, nullptr, false);
-  if (message.is_discarded()) return problem(ErrorCode::ParseError, "the message is not JSON");
-  return Incoming{std::move(message), std::nullopt};
 }
 
 void MessageWriter::write(const Value& message) {
@@ -118,10 +143,6 @@ void MessageWriter::write(const Value& message) {
 
 void MessageWriter::notify(const std::string& method, Value params) {
   write({{"jsonrpc", "2.0"}, {"method", method}, {"params", std::move(params)}});
-}
-
-void MessageWriter::request(int id, const std::string& method, Value params) {
-  write({{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", std::move(params)}});
 }
 
 void MessageWriter::answer(const Value& id, Value result) {

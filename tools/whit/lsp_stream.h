@@ -45,6 +45,8 @@ class MessageReader {
   bool fill();
   bool read_line(std::string& line, bool& too_long);
   bool read_bytes(size_t count, std::string& out);
+  bool skip_bytes(size_t count);
+  std::optional<size_t> read_header(bool& ended);
 
   int descriptor_;
   std::string buffer_;
@@ -57,7 +59,6 @@ class MessageWriter {
  public:
   explicit MessageWriter(int descriptor) : descriptor_(descriptor) {}
   void notify(const std::string& method, Value params);
-  void request(int id, const std::string& method, Value params);
   void answer(const Value& id, Value result);
   void fail(const Value& id, const RequestError& error);
 
