@@ -31,7 +31,7 @@ constexpr TypeName kTypes[] = {
 
 Remedy type_remedy(const std::string& name) {
   const std::vector<std::string> names = param_type_names();
-  if (Remedy remedy = suggestion(name, names); remedy.slip.known()) return remedy;
+  if (Remedy remedy = suggestion(name, names); !remedy.text.empty()) return remedy;
   std::string list = "the types are";
   for (const std::string& type : names) list += (type == names.front() ? " " : ", ") + type;
   return list;

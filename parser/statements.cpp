@@ -230,7 +230,7 @@ Remedy unknown_directive_remedy(std::string_view word) {
   for (const StatementRow& row : kStatements) known.emplace_back(row.name);
   const std::string nearest = nearest_name(std::string(word), known);
   if (nearest.empty()) return {};
-  return {"did you mean " + nearest + "?", {std::string(word), nearest}};
+  return {"did you mean " + nearest + "?", suggestion(std::string(word), known).slip};
 }
 
 void report_unknown_directive(Reporter& reporter, SourcePos where, std::string_view word) {

@@ -37,13 +37,9 @@ bool differs_in_case_alone(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) { return lower(x) == lower(y); });
 }
 
-}  // namespace
-
-bool Diagnostics::has_errors() const {
-  return std::any_of(all_.begin(), all_.end(), [](const Diagnostic& d) { return d.severity == Severity::Error; });
-}
-
-std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {
+/// nearest_name(); `tie`: another candidate is as near.
+std::string nearest_of(const std::string& name, const std::vector<std::string>& candidates, bool& tie) {
+  tie = false;
   // A longer "name" is no slip of the pen, and the cost grows with the product of the lengths.
   constexpr size_t kLongest = 64;
   if (name.empty() || name.size() > kLongest) return {};
@@ -57,9 +53,23 @@ std::string nearest_name(const std::string& name, const std::vector<std::string>
     if (best.empty() || distance < best_distance) {
       best = candidate;
       best_distance = distance;
+      tie = false;
+    } else if (distance == best_distance && candidate != best) {
+      tie = true;
     }
   }
   return best;
+}
+
+}  // namespace
+
+bool Diagnostics::has_errors() const {
+  return std::any_of(all_.begin(), all_.end(), [](const Diagnostic& d) { return d.severity == Severity::Error; });
+}
+
+std::string nearest_name(const std::string& name, const std::vector<std::string>& candidates) {
+  bool tie = false;
+  return nearest_of(name, candidates, tie);
 }
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& candidates) {
@@ -68,9 +78,10 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
 }
 
 Remedy suggestion(const std::string& name, const std::vector<std::string>& candidates) {
-  Remedy remedy = did_you_mean(name, candidates);
-  if (!remedy.text.empty()) remedy.slip = {name, nearest_name(name, candidates)};
-  return remedy;
+  bool tie = false;
+  const std::string nearest = nearest_of(name, candidates, tie);
+  if (nearest.empty()) return {};
+  return {"did you mean \"" + nearest + "\"?", tie ? Slip{} : Slip{name, nearest}};
 }
 
 }  // namespace whit

@@ -86,8 +86,12 @@ Diagnostics check_file(const ParsedFile& file, const std::string& path, const Ch
   std::stable_sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.where.file, a.where.offset) < std::tie(b.where.file, b.where.offset);
   });
+  // Names of another version are no slips in it.
+  const bool foreign =
+      std::any_of(ordered.begin(), ordered.end(), [](const Diagnostic& d) { return d.name == "other-version"; });
   Diagnostics out;
   for (Diagnostic& d : ordered) {
+    if (foreign) d.slip = {};
     if (d.excused) d.severity = Severity::Error;
     if (d.name.empty()) d.name = general_name(d);
     if (is_wanted(d, options) && (d.severity == Severity::Error || !allowances.allows(d.name, d.where)))

@@ -38,8 +38,24 @@ bool known_elsewhere(const Parameter& p, const std::vector<const PluginInfo*>& a
   });
 }
 
+/// Whether a plugin of a category has a parameter of a name: it is then no slip in the statement of another.
+bool category_has(const std::string& category, const std::string& name) {
+  const auto all = list_plugins(category);
+  return std::any_of(all.begin(), all.end(), [&](const PluginInfo* i) { return i->find_param(name) != nullptr; });
+}
+
+/// Whether another parameter of a statement has a name already, or would have it corrected.
+bool has_another(const ParameterList& params, const Parameter& p, const std::string& meant,
+                 const std::vector<std::string>& names) {
+  return std::any_of(params.begin(), params.end(), [&](const Parameter& other) {
+    if (&other == &p) return false;
+    const bool known = std::find(names.begin(), names.end(), other.name) != names.end();
+    return (known ? other.name : nearest_name(other.name, names)) == meant;
+  });
+}
+
 void warn_unknown(const PluginInfo& info, const Parameter& p, const BindContext& ctx,
-                  const std::vector<const PluginInfo*>& also_known) {
+                  const std::vector<const PluginInfo*>& also_known, const ParameterList& params) {
   std::vector<std::string> names;
   const auto add_names = [&](const PluginInfo* plugin) {
     for (const ParamSpec& spec : plugin->params) names.push_back(spec.name);
@@ -47,9 +63,12 @@ void warn_unknown(const PluginInfo& info, const Parameter& p, const BindContext&
   add_names(&info);
   for (const PluginInfo* other : also_known)
     if (other) add_names(other);
-  const Remedy hint = suggestion(p.name, names);
+  Remedy hint = suggestion(p.name, names);
+  bool elsewhere = category_has(info.category, p.name);
+  for (const PluginInfo* other : also_known) elsewhere = elsewhere || (other && category_has(other->category, p.name));
+  if (hint.slip.known() && (elsewhere || has_another(params, p, hint.slip.meant, names))) hint.slip = {};
   ctx.diagnostics->warning(p.where, info.name + " has no parameter \"" + p.name + '"',
-                           hint.slip.known() ? hint : "it is ignored", "unknown-parameter");
+                           !hint.text.empty() ? hint : "it is ignored", "unknown-parameter");
 }
 
 void warn_wrong_type(const PluginInfo& info, const ParamSpec& spec, const Parameter& p, const BindContext& ctx) {
@@ -68,7 +87,7 @@ void warn_empty(const PluginInfo& info, const Parameter& p, const BindContext& c
 
 /// Binds one parameter, or says why not. False after an error.
 bool bind_parameter(const PluginInfo& info, Plugin& plugin, const Parameter& p, const BindContext& ctx,
-                    const std::vector<const PluginInfo*>& also_known) {
+                    const std::vector<const PluginInfo*>& also_known, const ParameterList& params) {
   const ParamSpec* spec = info.find_param(p.name);
   if (spec && accepts(*spec, p.type) && p.is_empty()) {
     if (!spec->is_list) warn_empty(info, p, ctx);  // A list of nothing is as good as none.
@@ -77,7 +96,7 @@ bool bind_parameter(const PluginInfo& info, Plugin& plugin, const Parameter& p, 
   if (spec && accepts(*spec, p.type)) return spec->bind(plugin, p, ctx);
   if (known_elsewhere(p, also_known, /*any_type=*/!spec)) return true;
   if (spec) warn_wrong_type(info, *spec, p, ctx);
-  else warn_unknown(info, p, ctx, also_known);
+  else warn_unknown(info, p, ctx, also_known, params);
   return true;
 }
 
@@ -129,7 +148,8 @@ bool bind_parameters(const PluginInfo& info, Plugin& plugin, const ParameterList
   // Values first, so that a texture wins over a value of the same name, as in pbrt, wherever it stands.
   for (const bool textures : {false, true}) {
     for (const Parameter& p : params) {
-      if ((p.type == ParamType::Texture) == textures) ok = bind_parameter(info, plugin, p, ctx, also_known) && ok;
+      if ((p.type == ParamType::Texture) == textures)
+        ok = bind_parameter(info, plugin, p, ctx, also_known, params) && ok;
     }
   }
   return ok;

@@ -291,7 +291,7 @@ class Binder {
       std::vector<std::string> names = plugin_names("integrator");
       names.insert(names.end(), kPbrtIntegrators.begin(), kPbrtIntegrators.end());
       const Remedy hint = suggestion(entity.plugin, names);
-      if (hint.slip.known()) remedy = {remedy.text + '\n' + hint.text, hint.slip};
+      if (!hint.text.empty()) remedy = {remedy.text + '\n' + hint.text, hint.slip};
     }
     report({Severity::Warning,
             ErrorClass::Scene,

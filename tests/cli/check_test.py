@@ -133,6 +133,66 @@ class Check(Base):
         self.assertEqual(code, 4, err)
         self.assertEqual(self.read(), text)
 
+    def fixed(self, text):
+        """The text after --fix."""
+        self.write(text)
+        self.whit("--fix", "s.pbrt")
+        return self.read()
+
+    def test_fix_leaves_what_is_in_doubt(self):
+        plain = HEAD + "%s\n" + BALL
+        for statement in (
+                'MakeNamedMaterial "mata" "string type" "matte"\nMakeNamedMaterial "matb" "string type" "matte"\nNamedMaterial "matc"',
+                'Shape "sphere" "float radius" 1 "float raduis" 3',  # would be given twice
+                'Shape "sphere" "float radus" 1 "float raduis" 3',
+                'Material "glass" "float roughness" 0.1',  # as near to uroughness as to vroughness
+                'Material "mirror" "rgb Kd" [ 0.1 0.1 0.1 ]'):  # what matte has
+            with self.subTest(statement):
+                self.assertEqual(self.fixed(plain % statement), plain % statement)
+        # A file of another version.
+        text = 'Camera "perspective"\nColorSpace "srgb"\nWorldBegin\nShape "spher"\n'
+        self.assertEqual(self.fixed(text), text)
+
+    def test_fix_of_what_is_included_twice(self):
+        part = 'NamedMaterial "wood"\nShape "sphere" "float raduis" 2\n'
+        self.write(part, "part.pbrt")
+        def made(name):
+            return f'AttributeBegin\nMakeNamedMaterial "{name}" "string type" "matte"\nInclude "part.pbrt"\nAttributeEnd\n'
+        # Right in one place: not for the other to correct; what is wrong in both is.
+        self.fixed(HEAD + made("wood") + made("wool") + "WorldEnd\n")
+        self.assertEqual(self.read("part.pbrt"), part.replace("raduis", "radius"))
+        self.fixed(HEAD + made("wool") + made("wool") + "WorldEnd\n")
+        self.assertEqual(self.read("part.pbrt"), part.replace("raduis", "radius").replace("wood", "wool"))
+        # Two scenes do not turn it back and forth.
+        self.write(part.replace("raduis", "radius"), "part.pbrt")
+        self.write(HEAD + made("wood") + "WorldEnd\n", "a.pbrt")
+        self.write(HEAD + made("wool") + "WorldEnd\n", "b.pbrt")
+        _, _, err = self.whit("--fix", "b.pbrt", "a.pbrt", "b.pbrt")
+        self.assertEqual(err.count(": corrected "), 1, err)
+
+    def test_fix_of_a_file_with_two_names(self):
+        # It is written in place: longer, shorter, and across a page of memory.
+        for size in (10, 4000, 4096, 9000):
+            for written in ("Shap", "Shapee"):
+                text = HEAD + "#" + "x" * size + "\n" + written + ' "sphere"\nWorldEnd\n'
+                self.write(text)
+                os.link(os.path.join(self.folder, "s.pbrt"), os.path.join(self.folder, "t.pbrt"))
+                code, _, err = self.whit("--fix", "--json", "s.pbrt", "t.pbrt")
+                self.assertEqual(code, 0, err)
+                self.assertEqual(self.read("t.pbrt"), text.replace(written, "Shape"))
+                os.remove(os.path.join(self.folder, "t.pbrt"))
+
+    def test_fix_goes_on(self):
+        wrong = HEAD + 'Shap "sphere"\nWorldEnd\n'
+        for name in ("a.pbrt", "b.pbrt"):
+            self.write(wrong, name)
+        os.chmod(os.path.join(self.folder, "a.pbrt"), 0o444)
+        code, out, err = self.whit("--fix", "--json", "a.pbrt", "none.pbrt", "b.pbrt")
+        self.assertEqual(code, 4)
+        self.assertIn("cannot correct a.pbrt: it is write-protected", err)
+        self.assertEqual(self.read("b.pbrt"), HEAD + BALL)
+        self.assertEqual({d["name"] for d in json.loads(out)["diagnostics"] if d["severity"] == "error"}, {"mistake", "file"})
+
     def test_strict_and_notes(self):
         self.write(HEAD + 'ObjectBegin "o"\nShape "sphere"\nObjectEnd\nScale -1 1 1\nObjectInstance "o"\nWorldEnd\n')
         code, said = self.found("s.pbrt")

@@ -123,18 +123,23 @@ int check_command(const Arguments& args) {
   options.read_unplaced = true;
   CheckOptions wanted;
   wanted.allowed = flags.allow, wanted.asked_for = flags.also;
+  // Files that are written must not be mapped meanwhile.
+  options.copy_files = flags.fix;
+  Fixer fixer;
+  std::vector<std::string> unfixed;
   std::list<ParsedFile> files;
   std::vector<Checked> all;
   for (const std::string& path : flags.scenes) {
     if (flags.fix) {
       CheckOptions of_text = wanted;
       of_text.build = false;
-      const std::string problem = fix_slips([&] { return read_scene(path, options); },
-                                            [&](const ParsedFile& f) { return check_file(f, path, of_text); });
-      if (!problem.empty()) {
-        say("whit check: " + problem);
-        return kFileError;
-      }
+      const auto read = [&](const Fixer::Texts& texts) {
+        ReadOptions with_texts = options;
+        with_texts.unsaved = texts;
+        return read_scene(path, with_texts);
+      };
+      const auto problems = fixer.fix(read, [&](const ParsedFile& f) { return check_file(f, path, of_text); });
+      unfixed.insert(unfixed.end(), problems.begin(), problems.end());
     }
     const ParsedFile& file = files.emplace_back(read_scene(path, options));
     Diagnostics found = check_file(file, path, wanted);
@@ -148,6 +153,10 @@ int check_command(const Arguments& args) {
       all.push_back({file.sources.get(), std::move(found)});
     }
   }
+  std::sort(unfixed.begin(), unfixed.end());
+  unfixed.erase(std::unique(unfixed.begin(), unfixed.end()), unfixed.end());
+  for (const std::string& problem : unfixed) say("whit check: " + problem);
+  if (!unfixed.empty()) code = kFileError;
   if (flags.format == "text") return code;
   std::cout << (flags.format == "json" ? check_as_json(all) : check_as_sarif(all)) << '\n' << std::flush;
   if (std::cout) return code;

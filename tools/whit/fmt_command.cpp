@@ -43,6 +43,7 @@ Formatted format_one(const std::string& path, FormatOptions options) {
   Formatted out;
   options.written = &out.written;
   Sources sources;
+  sources.copy_files();  // What is replaced must not be mapped meanwhile.
   std::ostringstream text;
   Diagnostics d;
   EditorConfig config;
