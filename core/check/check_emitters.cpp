@@ -19,8 +19,8 @@
 namespace whit {
 namespace {
 
-/// What is nearer than this share of the scene's size lies on an emitter.
-constexpr float kNear = 0.02f;
+/// What is nearer to an emitter than these shares of the scene's size and of its own lies on it.
+constexpr float kNear = 0.02f, kNearOfItself = 0.5f;
 
 Vec3f unit(const Vec3f& v) { return v * (1 / std::max(length(v), 1e-30f)); }
 
@@ -56,6 +56,13 @@ std::vector<Place> places_on(const SceneShape& shape) {
     }
   }
   return out;
+}
+
+/// How wide the box around some places is.
+float extent_of(const std::vector<Place>& places) {
+  Box3d box;
+  for (const Place& place : places) box.extendBy(Vec3d(place.p));
+  return box.isEmpty() ? 0.0f : static_cast<float>((box.max - box.min).length());
 }
 
 /// Whether light goes on where a ray meets a shape: it is seen through, or passed.
@@ -110,13 +117,14 @@ void check_covered(const Scene& scene, Findings& found) {
   // Each costs some hundred rays; a world of that many is no room with a lamp turned around.
   constexpr size_t kMost = 1000;
   if (shapes.empty() || shapes.size() > kMost) return;
-  const float near = kNear * static_cast<float>(size_of_scene(scene));
+  const float near_in_scene = kNear * static_cast<float>(size_of_scene(scene));
   const std::set<int> seen = seen_to_emit(scene);
   for (const int index : shapes) {
     const SceneShape& shape = scene.shapes[static_cast<size_t>(index)];
     if (seen.count(index) > 0) continue;
     const std::vector<Place> places = places_on(shape);
     int cover = -1;
+    const float near = std::min(near_in_scene, kNearOfItself * extent_of(places));
     const bool covered = near > 0 && !places.empty() && std::all_of(places.begin(), places.end(), [&](const Place& p) {
                            cover = cover_of(scene, p, near);
                            return cover >= 0;

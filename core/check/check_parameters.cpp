@@ -1,6 +1,7 @@
 // Parameters that say nothing: each plugin knows its own (Plugin::ineffective()).
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -51,7 +52,12 @@ void check_parameters(const CheckedWorld& world, Findings& found) {
   checker.check(d.sampler, bound.sampler);
   checker.check(d.integrator, bound.integrator);
   checker.check_all(d.textures, bound.textures);
-  checker.check_all(d.materials, bound.materials);
+  // A material that shapes override in part is another for each of them: what has no effect there may have one here.
+  std::set<int> overridden;
+  for (size_t i = 0; i < d.shapes.size(); ++i)
+    if (bound.shape_material[i] != d.shapes[i].material) overridden.insert(d.shapes[i].material);
+  for (size_t i = 0; i < d.materials.size() && i < bound.materials.size(); ++i)
+    if (overridden.count(static_cast<int>(i)) == 0) checker.check(d.materials[i], bound.materials[i]);
   checker.check_all(d.lights, bound.lights);
   checker.check_all(d.area_lights, bound.area_lights);
   checker.check_all(d.shapes, bound.shapes);

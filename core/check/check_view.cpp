@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -35,6 +37,21 @@ Met look_around(const Scene& scene, int most, bool until_hit) {
     return !until_hit || met.hits == 0;
   });
   return met;
+}
+
+/// Whether there is something in all directions from where the camera is, and not in those of its view alone.
+bool is_enclosed(const Scene& scene) {
+  if (scene.camera_keys.size() != 1) return false;
+  const Vec3f eye(transform_point(scene.camera_keys.front(), Vec3d(0, 0, 0)));
+  constexpr int kDirections = 512;
+  for (int i = 0; i < kDirections; ++i) {
+    // The points of a spiral from pole to pole.
+    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z), angle = 2.399963229728653 * i;
+    const Vec3f d(static_cast<float>(r * std::cos(angle)), static_cast<float>(r * std::sin(angle)),
+                  static_cast<float>(z));
+    if (first_met(scene, eye, d, std::numeric_limits<float>::infinity()).shape < 0) return false;
+  }
+  return true;
 }
 
 /// Whether all corners of a box are beyond one and the same side of the view.
@@ -110,7 +127,8 @@ void check_view(const Scene& scene, Findings& found) {
                 "the camera sees nothing: none of " + std::to_string(dense.rays) + " rays meets a surface",
                 "it looks along +z of the space that LookAt and the transforms before Camera make");
     }
-  } else if (coarse.hits == coarse.rays && coarse.backs == coarse.hits && !view_has_light(scene, kCoarse)) {
+  } else if (coarse.hits == coarse.rays && coarse.backs == coarse.hits && is_enclosed(scene) &&
+             !view_has_light(scene, kCoarse)) {
     found.add("camera-inside", camera,
               "the camera is inside of something: all it sees are back sides, where no light comes");
   }

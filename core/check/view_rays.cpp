@@ -6,6 +6,7 @@
 
 #include "core/base/box.h"
 #include "core/render/flush_denormals.h"
+#include "core/render/render.h"
 #include "core/render/trace.h"
 
 namespace whit {
@@ -14,8 +15,13 @@ namespace {
 /// Calls f(n, x, y, index) for at most kBatch samples of pixels at a time: some pixels, or all with several samples each.
 /// Returns how many there were.
 template <class F>
-int for_pixels(const Vec2i& size, int most, const F& f) {
-  const double pixels = static_cast<double>(size.x) * size.y, every = std::max(1.0, std::sqrt(pixels / most));
+int for_pixels(const Scene& scene, int most, const F& f) {
+  double crop[4];
+  scene.film().crop_window(crop);
+  const Box2i window = crop_pixels(scene.film().resolution(), crop);
+  const Vec2i size = window.max - window.min;
+  const double pixels = std::max(1.0, static_cast<double>(size.x) * size.y),
+               every = std::max(1.0, std::sqrt(pixels / most));
   const auto samples = static_cast<uint32_t>(std::clamp(most / pixels, 1.0, 256.0));
   std::vector<int32_t> x, y;
   std::vector<uint32_t> index;
@@ -30,7 +36,8 @@ int for_pixels(const Vec2i& size, int most, const F& f) {
   for (double row = 0.5 * every; row < size.y; row += every) {
     for (double column = 0.5 * every; column < size.x; column += every) {
       for (uint32_t k = 0; k < samples; ++k) {
-        x.push_back(static_cast<int32_t>(column)), y.push_back(static_cast<int32_t>(row)), index.push_back(k);
+        x.push_back(window.min.x + static_cast<int32_t>(column)), y.push_back(window.min.y + static_cast<int32_t>(row));
+        index.push_back(k);
         if (x.size() == static_cast<size_t>(kBatch) && !flush()) return count;
       }
     }
@@ -44,26 +51,25 @@ int for_pixels(const Vec2i& size, int most, const F& f) {
 int for_view_rays(const Scene& scene, int most, const std::function<bool(Worker&, const Rays&, const Points&)>& look) {
   const FlushDenormals flush;
   Worker worker(scene, false);
-  return for_pixels(scene.film().resolution(), most,
-                    [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
-                      const ArenaScope scope(worker.arena);
-                      generate_camera_rays(worker, n, x, y, index);
-                      Rays rays = worker.level(0).rays();
-                      Tracer tracer(worker);
-                      const Hits hits = tracer.intersect(rays);
-                      const Points points = tracer.surfaces(rays, hits, Transport::Which::All);
-                      const bool on = look(worker, rays, points);
-                      tracer.finish();
-                      worker.leave(0);
-                      return on;
-                    });
+  return for_pixels(scene, most, [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
+    const ArenaScope scope(worker.arena);
+    generate_camera_rays(worker, n, x, y, index);
+    Rays rays = worker.level(0).rays();
+    Tracer tracer(worker);
+    const Hits hits = tracer.intersect(rays);
+    const Points points = tracer.surfaces(rays, hits, Transport::Which::All);
+    const bool on = look(worker, rays, points);
+    tracer.finish();
+    worker.leave(0);
+    return on;
+  });
 }
 
 bool view_has_light(const Scene& scene, int most) {
   const FlushDenormals flush;
   Worker worker(scene, false);
   bool lit = false;
-  for_pixels(scene.film().resolution(), most, [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
+  for_pixels(scene, most, [&](int n, const int32_t* x, const int32_t* y, const uint32_t* index) {
     const ArenaScope scope(worker.arena);
     generate_camera_rays(worker, n, x, y, index);
     trace_chunk(worker);

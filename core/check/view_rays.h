@@ -7,7 +7,7 @@
 
 namespace whit {
 
-/// Calls look(worker, rays, points) for batches of camera rays through pixels that are spread evenly over the picture, about
+/// Calls look(worker, rays, points) for batches of camera rays through pixels that are spread evenly over the picture, or what the film keeps of it, about
 /// `most` of them at most; `points` are where they meet surfaces, past interfaces. Stops when look() returns false.
 /// Returns how many rays there were.
 int for_view_rays(const Scene& scene, int most, const std::function<bool(Worker&, const Rays&, const Points&)>& look);

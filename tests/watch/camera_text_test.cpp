@@ -122,8 +122,8 @@ TEST(CameraText, RefusesWhatItDoesNotUnderstand) {
   EXPECT_NE(problem("Translate 0 0 5 # far\nRotate 5 0 1 0\nCamera \"perspective\"\n" + kWorld).find("from line 1"),
             std::string::npos);
   // A comment inside of what would be replaced.
-  for (const char* inside : {"LookAt 0 0 -5 # eye\n 0 0 0 0 1 0\n", "Transform [1 0 0 0 0 1 0 0 # here\n 0 0 1 0 0 0 5 1]\n",
-                             "Translate 0 # far\n 0 5\n"})
+  for (const char* inside : {"LookAt 0 0 -5 # eye\n 0 0 0 0 1 0\n",
+                             "Transform [1 0 0 0 0 1 0 0 # here\n 0 0 1 0 0 0 5 1]\n", "Translate 0 # far\n 0 5\n"})
     EXPECT_NE(problem(inside + std::string("Camera \"perspective\"\n") + kWorld).find("comment"), std::string::npos);
   EXPECT_NE(problem("Translate 0 0 5\nCoordinateSystem \"there\"\nIdentity\nCoordSysTransform \"there\"\nCamera "
                     "\"perspective\"\n" +

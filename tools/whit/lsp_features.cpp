@@ -212,8 +212,8 @@ Value format(Server& server, const Value& params) {
          now[now.size() - 1 - tail] == was[was.size() - 1 - tail])
     ++tail;
   // From the beginning of a line, so that no character and no \r\n is taken apart.
-  const auto begins_line = [&tail](std::string_view text) {
-    return tail == text.size() || text[text.size() - 1 - tail] == '\n';
+  const auto begins_line = [&tail](std::string_view whole) {
+    return tail == whole.size() || whole[whole.size() - 1 - tail] == '\n';
   };
   while (tail > 0 && !(begins_line(now) && begins_line(was))) --tail;
   return Value::array({{{"range", range_of(file, {same, was.size() - tail})},
