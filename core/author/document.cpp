@@ -79,10 +79,26 @@ Position Document::position(uint64_t offset) const {
   offset = std::min<uint64_t>(offset, text_.size());
   const size_t number = line_of(offset);
   const Span whole = line(number);
-  const std::string_view before =
-      std::string_view(text_).substr(whole.begin, std::min(offset, whole.end) - whole.begin);
-  const uint64_t character = encoding_ == Encoding::Utf8 ? before.size() : utf16_length(before);
+  const uint64_t character = characters({whole.begin, std::min(offset, whole.end)});
   return {static_cast<uint32_t>(number), static_cast<uint32_t>(character)};
+}
+
+uint64_t Document::characters(Span piece) const {
+  if (encoding_ == Encoding::Utf8) return piece.size();
+  return utf16_length(std::string_view(text_).substr(piece.begin, piece.size()));
+}
+
+Position Positions::at(uint64_t offset) {
+  // Behind the end of the line it may be another one; and back, or in front of all, it is counted anew.
+  if (offset < offset_ || offset > line_.end) {
+    position_ = document_.position(offset);
+    line_ = document_.line(position_.line);
+    offset_ = std::clamp(offset, line_.begin, line_.end);
+    return position_;
+  }
+  position_.character += static_cast<uint32_t>(document_.characters({offset_, offset}));
+  offset_ = offset;
+  return position_;
 }
 
 Span Document::replace(Span old, std::string_view by) {

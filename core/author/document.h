@@ -37,6 +37,8 @@ class Document {
   /// The byte of a position: the end of its line where the line is shorter, the end of the text behind the last line.
   uint64_t offset(Position at) const;
   Position position(uint64_t offset) const;
+  /// How many characters a piece of a line has.
+  uint64_t characters(Span piece) const;
 
   /// Puts other text in the place of a span. Returns where the text differs now.
   Span replace(Span old, std::string_view by);
@@ -56,5 +58,18 @@ class Document {
 
 /// How many units of UTF-16 some UTF-8 takes; a byte that is none of UTF-8 takes one.
 uint64_t utf16_length(std::string_view utf8);
+
+/// Positions of offsets that mostly ascend, each counted from the one before.
+class Positions {
+ public:
+  explicit Positions(const Document& document) : document_(document) {}
+  Position at(uint64_t offset);
+
+ private:
+  const Document& document_;
+  uint64_t offset_ = 0;
+  Position position_;
+  Span line_;
+};
 
 }  // namespace whit::author

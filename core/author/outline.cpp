@@ -42,6 +42,8 @@ std::optional<Kind> kind_of(const StatementRow& row) {
 
 /// Nobody opens more blocks in one another by hand, and whoever shows them goes down one by one.
 constexpr size_t kDeepest = 100;
+/// Nor does anybody look for one of more than this in one block, and an editor would take seconds to show them.
+constexpr size_t kMostOfBlock = 5000;
 
 bool opens(const StatementRow& row) { return row.nesting > 0 || row.name == "WorldBegin"; }
 bool closes(const StatementRow& row) { return row.nesting < 0 || row.name == "WorldEnd"; }
@@ -72,11 +74,15 @@ OutlineSymbol symbol_of(std::string_view text, const Item& item, Kind kind) {
 
 std::vector<OutlineSymbol> outline(const File& file) {
   std::vector<OutlineSymbol> stack(1);
+  const auto add = [&](OutlineSymbol symbol) {
+    std::vector<OutlineSymbol>& beside = stack.back().children;
+    if (beside.size() < kMostOfBlock) beside.push_back(std::move(symbol));
+  };
   const auto close = [&](uint64_t end) {
     OutlineSymbol done = std::move(stack.back());
     stack.pop_back();
     done.whole.end = end;
-    stack.back().children.push_back(std::move(done));
+    add(std::move(done));
   };
   uint64_t end = 0;
   size_t too_deep = 0;  ///< Blocks that are open and not shown.
@@ -100,7 +106,7 @@ std::vector<OutlineSymbol> outline(const File& file) {
     OutlineSymbol symbol = symbol_of(file.text(), item, *kind);
     if (opens(*item.row) && stack.size() > kDeepest) ++too_deep;
     else if (opens(*item.row)) stack.push_back(std::move(symbol));
-    else stack.back().children.push_back(std::move(symbol));
+    else add(std::move(symbol));
   }
   while (stack.size() > 1) close(end);
   return std::move(stack.front().children);

@@ -2,10 +2,16 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <condition_variable>
 #include <csignal>
 #include <deque>
+#include <iterator>
+#include <mutex>
+#include <new>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -42,14 +48,42 @@ class Inbox {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
     if (waiting_.empty()) return false;
-    out = std::move(waiting_.front());
-    waiting_.pop_front();
+    const auto next = waiting_.begin() + static_cast<std::ptrdiff_t>(next_in_turn());
+    out = std::move(*next);
+    waiting_.erase(next);
     is_cancelled =
         out.message.is_object() && out.message.contains("id") && cancelled_.erase(out.message["id"].dump()) > 0;
     return true;
   }
 
  private:
+  static std::string_view method(const Incoming& incoming) {
+    const Value& m = incoming.message;
+    const auto found = m.is_object() ? m.find("method") : m.end();
+    return m.is_object() && found != m.end() && found->is_string()
+               ? std::string_view(found->get_ref<const std::string&>())
+               : std::string_view();
+  }
+
+  /// What is told of a whole text takes its time: what comes with typing goes first. The answer then tells of the text
+  /// as it is by then, which is the one that the editor has.
+  size_t next_in_turn() const {
+    static constexpr std::string_view kLong[] = {"textDocument/semanticTokens/full", "textDocument/documentSymbol",
+                                                 "textDocument/foldingRange", "textDocument/documentColor",
+                                                 "textDocument/documentLink"};
+    static constexpr std::string_view kFirst[] = {"textDocument/didChange", "textDocument/completion",
+                                                  "textDocument/hover", "$/cancelRequest"};
+    const auto is_one_of = [](const auto& list, std::string_view name) {
+      return std::find(std::begin(list), std::end(list), name) != std::end(list);
+    };
+    for (size_t i = 0; i < waiting_.size(); ++i) {
+      const std::string_view name = method(waiting_[i]);
+      if (is_one_of(kLong, name)) continue;
+      return is_one_of(kFirst, name) ? i : 0;
+    }
+    return 0;
+  }
+
   /// Of those that wait alone: an id may be used again.
   void note_cancellation(const Incoming& incoming) {
     const Value& m = incoming.message;
@@ -75,11 +109,15 @@ bool ends_session(const Incoming& incoming) {
 }
 
 void read_all(int descriptor, Inbox& inbox) {
-  lsp::MessageReader reader(descriptor);
-  while (std::optional<Incoming> incoming = reader.read()) {
-    const bool last = ends_session(*incoming);
-    inbox.put(std::move(*incoming));
-    if (last) break;
+  try {
+    lsp::MessageReader reader(descriptor);
+    while (std::optional<Incoming> incoming = reader.read()) {
+      const bool last = ends_session(*incoming);
+      inbox.put(std::move(*incoming));
+      if (last) break;
+    }
+  } catch (const std::bad_alloc&) {
+    // Where the next message begins is not known any more: the session ends here.
   }
   inbox.close();
 }

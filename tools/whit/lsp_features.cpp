@@ -289,8 +289,9 @@ constexpr const char* kTokenTypes[] = {"keyword", "class",  "type",  "property",
 Value tokens(const File& file, Span span) {
   Value data = Value::array();
   author::Position last;
+  author::Positions positions(file.document);
   for (const author::ColouredWord& w : author::words(file, span)) {
-    const author::Position at = file.document.position(w.at.begin), end = file.document.position(w.at.end);
+    const author::Position at = positions.at(w.at.begin), end = positions.at(w.at.end);
     if (end.line != at.line) continue;
     const bool same_line = at.line == last.line;
     for (const uint32_t n : {at.line - last.line, same_line ? at.character - last.character : at.character,
