@@ -73,6 +73,7 @@ class Reader {
     if (!out_.row) return Before::At::Statement;
     const ArgumentRule& rule = out_.row->arguments;
     if (in_list_ || value_wanted_) return Before::At::Value;
+    if (numbers_ < rule.numbers) return Before::At::Nothing;
     if (out_.names.size() < rule.min_strings) return Before::At::Name;
     if (out_.names.size() < rule.max_strings && !rule.parameters) return Before::At::Name;
     if (rule.word && !word_given_) return Before::At::Word;
@@ -100,7 +101,8 @@ class Reader {
     while (end < text_.size() && (std::isalnum(static_cast<unsigned char>(text_[end])) != 0)) ++end;
     out_.replaces = {token.offset, end};
     const Before::At at = expected();
-    const bool begins = token.kind == TokenKind::Word && at != Before::At::Word && at != Before::At::Value;
+    const bool begins =
+        token.kind == TokenKind::Word && at != Before::At::Word && at != Before::At::Value && at != Before::At::Nothing;
     stop(begins ? Before::At::Statement : token.kind == TokenKind::Number ? Before::At::Nothing : at);
   }
 
@@ -110,7 +112,10 @@ class Reader {
       case TokenKind::String: pass_string(token); break;
       case TokenKind::Open: in_list_ = value_wanted_; break;
       case TokenKind::Close: in_list_ = value_wanted_ = false; break;
-      case TokenKind::Number: value_wanted_ = in_list_; break;
+      case TokenKind::Number:
+        if (!value_wanted_) ++numbers_;
+        value_wanted_ = in_list_;
+        break;
       case TokenKind::Bad:
       case TokenKind::End: break;
     }
@@ -120,6 +125,7 @@ class Reader {
     if (const StatementRow* row = find_statement(token.text)) {
       out_.row = row, out_.names.clear(), out_.parameters.clear();
       in_list_ = value_wanted_ = word_given_ = false;
+      numbers_ = 0;
     } else if (out_.row && out_.row->arguments.word) {
       word_given_ = true;
     } else if (!value_wanted_) {
@@ -147,6 +153,7 @@ class Reader {
   uint64_t offset_;
   Before out_;
   bool in_list_ = false, value_wanted_ = false, word_given_ = false;
+  int numbers_ = 0;  ///< Of the directive itself.
 };
 
 class Completer {
@@ -220,6 +227,7 @@ class Completer {
     const bool known = &main() != &file_ || file_.index.begins_world();
     for (const StatementRow& row : statements()) {
       if (known && row.block == (scope().in_world() ? Block::Options : Block::World)) continue;
+      if (known && !stands_here(row)) continue;
       Proposal& p =
           add(Proposal::Kind::Statement, std::string(row.name), std::string(row.arguments.usage), describe(row));
       p.text = statement_snippet(row);
@@ -228,19 +236,41 @@ class Completer {
     }
   }
 
-  static std::string statement_snippet(const StatementRow& row) {
+  /// Whether blocks are open as a statement needs it.
+  bool stands_here(const StatementRow& row) {
+    const std::vector<const StatementRow*>& blocks = scope().blocks();
+    if (row.nesting < 0)
+      return !blocks.empty() && blocks.back()->name == std::string(row.name.substr(0, row.name.size() - 3)) + "Begin";
+    const bool in_object =
+        std::any_of(blocks.begin(), blocks.end(), [](const StatementRow* b) { return b->name == "ObjectBegin"; });
+    if (row.name == "WorldEnd") return blocks.empty();
+    return !in_object || (row.name != "ObjectBegin" && row.name != "ObjectInstance");
+  }
+
+  /// The first name of a kind that is known here, as a snippet has it; another one where there is none.
+  std::string first_name(NameKind kind, const std::string& otherwise) {
+    const std::vector<std::string> names = kind == NameKind::Medium ? all_media() : scope().names(kind);
+    if (names.empty()) return otherwise;
+    std::string out;
+    for (const char c : escaped(names.front())) {
+      if (c == '$' || c == '}' || c == '\\') out += '\\';
+      out += c;
+    }
+    return out;
+  }
+
+  std::string statement_snippet(const StatementRow& row) {
     static constexpr std::pair<std::string_view, std::string_view> kOwn[] = {
         {"AttributeBegin", "AttributeBegin\n  $0\nAttributeEnd"},
         {"TransformBegin", "TransformBegin\n  $0\nTransformEnd"},
         {"ObjectBegin", "ObjectBegin \"${1:name}\"\n  $0\nObjectEnd"},
         {"WorldBegin", "WorldBegin\n$0\nWorldEnd"},
-        {"Texture", "Texture \"${1:name}\" \"${2|spectrum,float|}\" \"${3:plugin}\"$0"},
+        {"Texture", "Texture \"${1:name}\" \"${2|spectrum,float|}\" \"${3:constant}\"$0"},
         {"MakeNamedMaterial", "MakeNamedMaterial \"${1:name}\" \"string type\" \"${2:matte}\"$0"},
         {"MakeNamedMedium", "MakeNamedMedium \"${1:name}\" \"string type\" \"${2:homogeneous}\"$0"},
-        {"MediumInterface", "MediumInterface \"${1:inside}\" \"${2:outside}\"$0"},
         {"ActiveTransform", "ActiveTransform ${1|All,StartTime,EndTime|}$0"},
         {"Scale", "Scale ${1:1} ${2:1} ${3:1}$0"},
-        {"Rotate", "Rotate ${1:degrees} ${2:0} ${3:1} ${4:0}$0"},
+        {"Rotate", "Rotate ${1:0} ${2:0} ${3:1} ${4:0}$0"},
         {"LookAt", "LookAt ${1:0} ${2:0} ${3:0}  ${4:0} ${5:0} ${6:1}  ${7:0} ${8:1} ${9:0}$0"},
         {"TransformTimes", "TransformTimes ${1:0} ${2:1}$0"},
     };
@@ -250,8 +280,28 @@ class Completer {
     std::string out(row.name);
     if (row.arguments.numbers == 16) return out + " [ ${1:1 0 0 0  0 1 0 0  0 0 1 0  0 0 0 1} ]$0";
     for (int i = 1; i <= row.arguments.numbers; ++i) out += fmt::format(" ${{{}:0}}", i);
-    if (row.arguments.max_strings > 0) out += " \"$1\"$0";
+    if (row.name == "MediumInterface") {
+      const std::string medium = first_name(NameKind::Medium, "");
+      return out + fmt::format(" \"${{1:{0}}}\" \"${{2:}}\"$0", medium);
+    }
+    if (row.arguments.max_strings > 0) out += fmt::format(" \"${{1:{}}}\"$0", first_string(row.name));
     return out;
+  }
+
+  /// What a statement may name first without being wrong.
+  std::string first_string(std::string_view directive) {
+    static constexpr std::pair<std::string_view, const char*> kPlugins[] = {
+        {"Accelerator", "bvh"},    {"AreaLightSource", "diffuse"},
+        {"Camera", "perspective"}, {"Film", "image"},
+        {"Filter", "box"},         {"PixelFilter", "box"},
+        {"Integrator", "whitted"}, {"LightSource", "point"},
+        {"Material", "matte"},     {"Sampler", "halton"},
+        {"Shape", "sphere"},       {"CoordinateSystem", "name"}};
+    for (const auto& [name, plugin] : kPlugins) {
+      if (name == directive) return plugin;
+    }
+    const std::optional<NameKind> kind = used_kind(directive);
+    return kind ? first_name(*kind, "") : "";
   }
 
   // ---- names behind a directive
@@ -383,8 +433,14 @@ class Completer {
     p.snippet = true;
   }
 
-  static std::string value_snippet(const ParamSpec& spec, ParamType type) {
-    if (type == ParamType::Texture) return "\"${1:texture}\"";
+  /// Numbers alone, as a file may have them.
+  static bool is_numbers(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789.+-e ") == std::string::npos;
+  }
+
+  /// Something that can be read; what has no default that is written in numbers is 1.
+  std::string value_snippet(const ParamSpec& spec, ParamType type) {
+    if (type == ParamType::Texture) return "\"${1:" + first_name(texture_kind(&spec), "texture") + "}\"";
     if (type == ParamType::Bool) return spec.default_text == "false" ? "\"${1|false,true|}\"" : "\"${1|true,false|}\"";
     if (!spec.choices.empty()) return fmt::format("\"${{1|{}|}}\"", fmt::join(spec.choices, ","));
     if (type == ParamType::String) {
@@ -392,10 +448,11 @@ class Completer {
       if (inside.size() >= 2 && inside.front() == '"') inside = inside.substr(1, inside.size() - 2);
       return spec.is_list ? fmt::format("[ \"${{1:{}}}\" ]", inside) : fmt::format("\"${{1:{}}}\"", inside);
     }
-    if (spec.is_list) return "[ $1 ]";
-    const bool several = spec.default_text.find(' ') != std::string::npos;
+    const bool known = is_numbers(spec.default_text);
+    const bool several = known && spec.default_text.find(' ') != std::string::npos;
+    if (spec.is_list) return fmt::format("[ ${{1:{}}} ]", known ? spec.default_text : std::string("1"));
     if (is_colour(type)) return fmt::format("[ ${{1:{}}} ]", several ? spec.default_text : std::string("1 1 1"));
-    const std::string value = spec.default_text.empty() ? std::string() : spec.default_text;
+    const std::string value = known ? spec.default_text : "1";
     return several ? fmt::format("[ ${{1:{}}} ]", value) : fmt::format("${{1:{}}}", value);
   }
 
@@ -425,13 +482,14 @@ class Completer {
   }
 
   /// Of the kind that the parameter takes.
-  void propose_textures(const std::string& parameter) {
-    const ParamSpec* spec = spec_of(parameter);
+  void propose_textures(const std::string& parameter) { propose_known(texture_kind(spec_of(parameter))); }
+
+  static NameKind texture_kind(const ParamSpec* spec) {
     const bool colour = spec && std::any_of(spec->accepts.begin(), spec->accepts.end(), is_colour);
     const bool number = spec && std::count(spec->accepts.begin(), spec->accepts.end(), ParamType::Float) > 0;
-    propose_known(colour && !number   ? NameKind::ColourTexture
-                  : number && !colour ? NameKind::FloatTexture
-                                      : NameKind::AnyTexture);
+    return colour && !number   ? NameKind::ColourTexture
+           : number && !colour ? NameKind::FloatTexture
+                               : NameKind::AnyTexture;
   }
 
   void propose_string(const std::string& name) {

@@ -214,7 +214,7 @@ void Scope::end_world() {
   finish();
   for (Names* names : {&float_textures_, &colour_textures_, &materials_, &objects_, &systems_, &media_}) names->clear();
   system_transforms_.clear();
-  undo_.clear(), saved_.clear(), saved_transforms_.clear();
+  blocks_.clear(), undo_.clear(), saved_.clear(), saved_transforms_.clear();
   state_ = State();
   transform_ = -1, active_ = {};
   in_world_ = false;
@@ -226,6 +226,8 @@ void Scope::apply(File& file, size_t item) {
   const Does does = what_does(statement.row);
   const bool begins = does == Does::BeginAttribute;
   if (begins) begin_graphics();
+  if (statement.row->nesting > 0) blocks_.push_back(statement.row);
+  if (statement.row->nesting < 0 && !blocks_.empty()) blocks_.pop_back();
   const std::vector<Mention>& mentions = file.index.mentions();
   const size_t first = first_mention(file, statement);
   for (next_mention_ = first; next_mention_ < mentions.size() && mentions[next_mention_].at.begin < statement.at.end;

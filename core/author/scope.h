@@ -40,6 +40,8 @@ class Scope {
   void finish();
 
   bool in_world() const { return in_world_; }
+  /// The statements that have opened the blocks around here, the innermost last.
+  const std::vector<const StatementRow*>& blocks() const { return blocks_; }
   const std::vector<MentionAt>& definitions() const { return definitions_; }
   const std::vector<Use>& uses() const { return uses_; }
 
@@ -97,6 +99,7 @@ class Scope {
   const Names& names_of(NameKind kind) const { return const_cast<Scope*>(this)->names_of(kind); }
 
   bool in_world_ = false;
+  std::vector<const StatementRow*> blocks_;
   std::vector<MentionAt> definitions_;
   std::vector<Use> uses_;
   Names float_textures_, colour_textures_, materials_, objects_, systems_, media_;

@@ -170,7 +170,7 @@ def test_completion(s):
     found = s.complete(text, "  Sh")
     assert "Shape" in labels(found) and "Film" not in labels(found)
     shape = next(i for i in found["items"] if i["label"] == "Shape")
-    assert shape["insertTextFormat"] == 2 and shape["textEdit"]["newText"] == 'Shape "$1"$0'
+    assert shape["insertTextFormat"] == 2 and shape["textEdit"]["newText"] == 'Shape "${1:sphere}"$0'
     assert shape["textEdit"]["range"] == {"start": position((10, 2)), "end": position((10, 4))}
     # Plugins, with what they are.
     found = s.complete(MAIN.replace('"sphere"', '"'), 'Shape "')
@@ -185,7 +185,7 @@ def test_completion(s):
     phimax = next(i for i in found["items"] if i["label"] == "phimax")
     assert phimax["textEdit"]["newText"] == 'float phimax" ${1:360}$0' and "degrees" in phimax["detail"]
     kd = [i["textEdit"]["newText"] for i in found["items"] if i["label"] == "Kd"]
-    assert kd == ['rgb Kd" [ ${1:0.5 0.5 0.5} ]$0', 'texture Kd" "${1:texture}"$0'], kd
+    assert kd == ['rgb Kd" [ ${1:0.5 0.5 0.5} ]$0', 'texture Kd" "${1:checks}"$0'], kd
     # Names in scope, through the Include.
     found = s.complete(MAIN.replace('NamedMaterial "red"', 'NamedMaterial "r"'), 'NamedMaterial "r')
     assert labels(found) == ["red"] and found["items"][0]["textEdit"]["newText"] == 'red"'
@@ -226,7 +226,7 @@ def test_completion_for_plain_clients(folder):
     uri = c.open(os.path.join(folder, "scene.pbrt"), text)
     found = c.at("completion", uri, place(text, 'sphere" "', 9))
     texts = {i["label"]: i["textEdit"]["newText"] for i in found["items"]}
-    assert texts["radius"] == 'float radius" 1' and texts["Kd"] == 'texture Kd" "texture"', texts
+    assert texts["radius"] == 'float radius" 1' and texts["Kd"] == 'texture Kd" "checks"', texts
     symbols = c.whole("documentSymbol", uri)
     assert all("location" in s for s in symbols)
     assert c.end() == 0
