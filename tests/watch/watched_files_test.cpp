@@ -111,9 +111,10 @@ TEST(WatchedFiles, AModelsBuffersAndPictures) {
   put(path, "{");
   EXPECT_EQ(files_of_model(path), Names{});
   // A .glb: 12 bytes of head, the length of the JSON (31) and its kind, and the JSON.
-  const std::string json = R"({"buffers": [{"uri": "b.bin"}])" + std::string("}");
+  const std::string json = R"({"buffers": [{"uri": "b.bin"}]})";
   ASSERT_EQ(json.size(), 31u);
-  const std::string glb = std::string("glTF\2\0\0\0\x33\0\0\0", 12) + std::string("\x1f\0\0\0JSON", 8) + json;
+  std::string glb("glTF\2\0\0\0\x33\0\0\0\x1f\0\0\0JSON", 20);
+  glb.append(json);
   put(folder.path("m.glb"), glb);
   EXPECT_EQ(files_of_model(folder.path("m.glb")), Names{folder.path("b.bin")});
   for (size_t n = 0; n < glb.size(); ++n) {
