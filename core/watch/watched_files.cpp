@@ -182,12 +182,21 @@ FileWatch::FileWatch() : FileWatch(Options{}) {}
 FileWatch::FileWatch(const Options& options) : impl_(std::make_unique<Impl>(options)) {}
 FileWatch::~FileWatch() = default;
 
-long long FileWatch::now_mark() {
-  // As coarse as the marks of files, which take the time of the last tick.
+namespace {
+
+long long read_clock(clockid_t clock) {
   timespec now{};
-  ::clock_gettime(CLOCK_REALTIME_COARSE, &now);
+  ::clock_gettime(clock, &now);
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
+
+/// Newer kernels give some files finer times than that of the last tick.
+long long exact_now() { return read_clock(CLOCK_REALTIME); }
+
+}  // namespace
+
+// As coarse as the marks of most files, which take the time of the last tick.
+long long FileWatch::now_mark() { return read_clock(CLOCK_REALTIME_COARSE); }
 
 void FileWatch::watch(const std::vector<std::string>& files, long long since) {
   const std::lock_guard lock(impl_->mutex);
@@ -200,7 +209,7 @@ void FileWatch::watch(const std::vector<std::string>& files, long long since) {
       continue;
     }
     const Mark now = mark_of(path);
-    const bool fresh = now.there && now.time() > since && now.time() <= now_mark();
+    const bool fresh = now.there && now.time() > since && now.time() <= exact_now();
     marks.emplace(path, fresh ? Mark{} : now);
   }
   impl_->marks = std::move(marks);
