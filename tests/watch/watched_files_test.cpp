@@ -18,6 +18,9 @@ using Names = std::vector<std::string>;
 
 void put(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
+/// What was written in the tick of a mark counts as changed since.
+void pass_a_tick() { std::this_thread::sleep_for(std::chrono::milliseconds(30)); }
+
 /// Of each test its own.
 class Folder {
  public:
@@ -44,8 +47,7 @@ class Watched : public testing::TestWithParam<bool> {
 TEST_P(Watched, ChangesReplacementsAndFilesThatComeAndGo) {
   const std::string a = folder.path("a"), b = folder.path("b");
   put(a, "1");
-  // What was written in the tick of the mark counts as changed since.
-  std::this_thread::sleep_for(std::chrono::milliseconds(30));
+  pass_a_tick();
   FileWatch watch(options());
   watch.watch({a, b}, FileWatch::now_mark());
   EXPECT_EQ(watch.wait(0), Names{});
@@ -63,6 +65,7 @@ TEST_P(Watched, ChangesReplacementsAndFilesThatComeAndGo) {
 TEST_P(Watched, OtherFilesAreNobodysBusiness) {
   const std::string a = folder.path("a");
   put(a, "1");
+  pass_a_tick();
   FileWatch watch(options());
   watch.watch({a}, FileWatch::now_mark());
   put(folder.path("other"), "1");
