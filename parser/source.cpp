@@ -8,9 +8,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <mutex>
 #include <sstream>
+
+#include "core/base/file_names.h"
 
 namespace whit {
 
@@ -86,13 +87,6 @@ size_t columns(const std::vector<std::string>& cells) {
   size_t sum = 0;
   for (const std::string& cell : cells) sum += columns(cell);
   return sum;
-}
-
-/// One name for each file, as far as its folders are there.
-std::string canonical(const std::string& path) {
-  std::error_code ignored;
-  const std::filesystem::path found = std::filesystem::weakly_canonical(path, ignored);
-  return found.empty() ? path : found.string();
 }
 
 std::string read_all(int descriptor, std::string& problem) {
@@ -181,12 +175,12 @@ Sources::~Sources() = default;
 const Sources::File* Sources::find(uint32_t file) const { return file < files_.size() ? files_[file].get() : nullptr; }
 
 void Sources::stand_in(const std::string& path, std::string text) {
-  stand_ins_[canonical(path)] = add_text(path, std::move(text));
+  stand_ins_[canonical_path(path)] = add_text(path, std::move(text));
 }
 
 std::optional<uint32_t> Sources::stand_in_for(const std::string& path) const {
   if (stand_ins_.empty()) return std::nullopt;
-  const auto found = stand_ins_.find(canonical(path));
+  const auto found = stand_ins_.find(canonical_path(path));
   if (found == stand_ins_.end()) return std::nullopt;
   return found->second;
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "core/base/file_names.h"
 #include "core/check/check.h"
 #include "core/check/edit.h"
 #include "parser/lexer.h"
@@ -64,12 +65,6 @@ class Translator {
 };
 
 }  // namespace
-
-std::string canonical_path(const std::string& path) {
-  std::error_code failed;
-  const std::filesystem::path found = std::filesystem::weakly_canonical(path, failed);
-  return found.empty() ? path : found.string();
-}
 
 Findings diagnose(const std::string& main_file, const std::vector<OpenText>& open, const DiagnoseOptions& options) {
   ReadOptions read;

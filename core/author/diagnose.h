@@ -47,7 +47,4 @@ struct DiagnoseOptions {
 using Findings = std::map<std::string, std::vector<Finding>>;
 Findings diagnose(const std::string& main_file, const std::vector<OpenText>& open, const DiagnoseOptions& options);
 
-/// One name for each file, as far as its folders are there.
-std::string canonical_path(const std::string& path);
-
 }  // namespace whit::author

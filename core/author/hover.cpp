@@ -10,6 +10,7 @@
 #include "core/author/names.h"
 #include "core/author/scope.h"
 #include "core/author/vocabulary.h"
+#include "core/base/file_names.h"
 
 namespace whit::author {
 namespace {

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/base/file_names.h"
+
 namespace whit::author {
 namespace {
 

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/base/file_names.h"
 #include "parser/include.h"
 
 namespace whit::author {

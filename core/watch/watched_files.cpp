@@ -20,6 +20,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/base/file_names.h"
+#include "core/plugin/file_state.h"
 #include "parser/include.h"
 #include "parser/lexer.h"
 
@@ -28,38 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-/// What tells a file from the one that was there before.
-struct Mark {
-  bool there = false;
-  uint64_t device = 0, inode = 0;
-  int64_t size = 0, seconds = 0, nanoseconds = 0;
-  bool operator==(const Mark&) const = default;
-  long long time() const { return seconds * 1'000'000'000LL + nanoseconds; }
-};
-
-Mark mark_of(const std::string& path) {
-  struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return {true, status.st_dev, status.st_ino, status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
-}
-
-/// "a%20b" is "a b".
-std::string percent_decoded(const std::string& text) {
-  std::string out;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const auto digit = [&](size_t at) {
-      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at]));
-    };
-    if (text[i] == '%' && digit(i + 1) && digit(i + 2)) {
-      out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
-}
 
 /// The JSON of a model: the file, or the first chunk of a .glb. Discarded when it is no JSON (yet).
 nlohmann::json json_of_model(const std::string& path) {
@@ -162,7 +132,7 @@ struct FileWatch::Impl {
     const std::lock_guard lock(mutex);
     std::vector<std::string> names;
     for (auto& [path, mark] : marks) {
-      const Mark now = mark_of(path);
+      const FileState now = file_state(path);
       if (now == mark) continue;
       mark = now;
       names.push_back(path);
@@ -174,8 +144,8 @@ struct FileWatch::Impl {
   int wake_fd = -1, notify_fd = -1;
   bool woken = false;
   std::mutex mutex;
-  std::map<std::string, Mark> marks;  ///< By path.
-  std::set<std::string> folders;      ///< That inotify watches.
+  std::map<std::string, FileState> marks;  ///< By path.
+  std::set<std::string> folders;           ///< That inotify watches.
 };
 
 FileWatch::FileWatch() : FileWatch(Options{}) {}
@@ -200,7 +170,7 @@ long long FileWatch::now_mark() { return read_clock(CLOCK_REALTIME_COARSE); }
 
 void FileWatch::watch(const std::vector<std::string>& files, long long since) {
   const std::lock_guard lock(impl_->mutex);
-  std::map<std::string, Mark> marks;
+  std::map<std::string, FileState> marks;
   for (const std::string& path : files) {
     impl_->add_folders(path);
     const auto known = impl_->marks.find(path);
@@ -208,9 +178,10 @@ void FileWatch::watch(const std::vector<std::string>& files, long long since) {
       marks.insert(*known);
       continue;
     }
-    const Mark now = mark_of(path);
-    const bool fresh = now.there && now.time() > since && now.time() <= exact_now();
-    marks.emplace(path, fresh ? Mark{} : now);
+    const FileState now = file_state(path);
+    const bool fresh =
+        now.exists() && now.nanoseconds_since_1970() > since && now.nanoseconds_since_1970() <= exact_now();
+    marks.emplace(path, fresh ? FileState{} : now);
   }
   impl_->marks = std::move(marks);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "core/base/file_names.h"
 #include "core/check/edit.h"
 #include "core/check/findings.h"
 #include "core/check/names.h"
@@ -51,15 +52,7 @@ Json diagnostic_as_json(const Sources& sources, const Diagnostic& d) {
 }
 
 /// The path of a file as a URI: relative where the path is, with what URIs may not hold as %XX.
-std::string uri_of(const std::string& path) {
-  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~/";
-  std::string out = path.starts_with('/') ? "file://" : "";
-  for (const char c : path) {
-    if (kPlain.find(c) != std::string_view::npos) out += c;
-    else out += fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return out;
-}
+std::string uri_of(const std::string& path) { return (path.starts_with('/') ? "file://" : "") + percent_encoded(path); }
 
 Json text_of(const std::string& text) { return Json::Object{{"text", text}}; }
 

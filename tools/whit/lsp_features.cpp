@@ -12,6 +12,7 @@
 #include "core/author/hover.h"
 #include "core/author/names.h"
 #include "core/author/outline.h"
+#include "core/base/file_names.h"
 #include "parser/editor_config.h"
 #include "parser/format.h"
 #include "tools/whit/lsp_server.h"
@@ -401,7 +402,7 @@ Value links(Server& server, const Value& params) {
   Value out = Value::array();
   for (const author::Mention& m : file.index.mentions()) {
     if (m.kind != author::NameKind::Include && m.kind != author::NameKind::Asset) continue;
-    const std::string path = author::canonical_path(server.workspace.resolve(main, m.name));
+    const std::string path = canonical_path(server.workspace.resolve(main, m.name));
     out.push_back({{"range", range_of(file, author::inside(m))}, {"target", uri_of_path(path)}});
   }
   return out;

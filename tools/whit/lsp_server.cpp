@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/base/file_names.h"
 #include "tools/whit/version.h"
 
 namespace whit::lsp {
@@ -102,32 +103,14 @@ Position position_of(const Value& json) {
 
 std::string path_of_uri(const std::string& uri) {
   if (!uri.starts_with("file://")) return uri;
-  const auto digit = [](char c) {
-    return c >= '0' && c <= '9'   ? c - '0'
-           : c >= 'a' && c <= 'f' ? c - 'a' + 10
-           : c >= 'A' && c <= 'F' ? c - 'A' + 10
-                                  : -1;
-  };
   // Behind the name of a host, which is this one.
-  size_t at = uri.find('/', 7);
-  std::string path;
-  for (; at < uri.size(); ++at) {
-    const bool escape = uri[at] == '%' && at + 2 < uri.size() && digit(uri[at + 1]) >= 0 && digit(uri[at + 2]) >= 0;
-    path += escape ? static_cast<char>(digit(uri[at + 1]) * 16 + digit(uri[at + 2])) : uri[at];
-    if (escape) at += 2;
-  }
-  return path;
+  const size_t at = uri.find('/', 7);
+  return at == std::string::npos ? std::string() : percent_decoded(std::string_view(uri).substr(at));
 }
 
 std::string uri_of_path(const std::string& path) {
   if (path.empty() || path.front() != '/') return path;
-  std::string uri = "file://";
-  for (const char c : path) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       std::string_view("/-._~").find(c) != std::string_view::npos;
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return uri;
+  return "file://" + percent_encoded(path);
 }
 
 Server::Server(MessageWriter& writer) : writer_(writer) {
@@ -186,7 +169,7 @@ Value Server::initialize(const Value& params) {
   if (std::exchange(initialized_, true)) throw RequestError{ErrorCode::InvalidRequest, "initialize is sent once"};
   take_client(member(params, {"capabilities"}));
   const auto add_folder = [this](const Value& uri) {
-    if (uri.is_string()) workspace.folders.push_back(author::canonical_path(path_of_uri(uri.get<std::string>())));
+    if (uri.is_string()) workspace.folders.push_back(canonical_path(path_of_uri(uri.get<std::string>())));
   };
   const Value& folders = member(params, {"workspaceFolders"});
   for (const Value& folder : folders.is_array() ? folders : Value::array()) add_folder(member(folder, {"uri"}));
