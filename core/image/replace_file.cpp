@@ -110,4 +110,9 @@ std::string replace_file(const std::string& path, const std::string& text) {
   return overwrite(target, before, text);
 }
 
+bool holds_text(const std::string& path, std::string_view text) {
+  std::ifstream in(path, std::ios::binary);
+  return in.is_open() && std::string{std::istreambuf_iterator<char>(in), {}} == text;
+}
+
 }  // namespace whit

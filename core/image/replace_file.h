@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace whit {
 
@@ -9,5 +10,8 @@ namespace whit {
 /// links stay. Whatever goes wrong, the file holds the old text or the new one. "" or why it was not done; a file without
 /// permission to write is refused, to the superuser too. The same text again leaves the file untouched.
 std::string replace_file(const std::string& path, const std::string& text);
+
+/// Whether a file can be read and has just this text.
+bool holds_text(const std::string& path, std::string_view text);
 
 }  // namespace whit

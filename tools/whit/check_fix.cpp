@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -16,14 +14,6 @@
 
 namespace whit {
 namespace {
-
-/// Whether the text of a source is that of the file of its name, as it is now; models have texts that are in no file.
-bool is_of_file(const Sources& sources, uint32_t file) {
-  std::ifstream in(sources.name(file), std::ios::binary);
-  if (!in) return false;
-  const std::string now{std::istreambuf_iterator<char>(in), {}};
-  return now == sources.text(file);
-}
 
 /// At most how often each file of a scene is read, which is more than once where it is included in several places: exact
 /// where one file alone is.
@@ -76,7 +66,8 @@ std::vector<std::string> Fixer::fix(const std::function<ParsedFile(const Texts&)
       const std::string& name = sources.name(number);
       const std::string_view text = sources.text(number);
       auto mine = std::find_if(texts.begin(), texts.end(), [&](const auto& t) { return t.first == name; });
-      if (mine == texts.end() && !is_of_file(sources, number)) continue;
+      // Models have texts that are in no file, and a file may have changed since.
+      if (mine == texts.end() && !holds_text(name, text)) continue;
       std::erase_if(edits, [&, n = number](const Edit& e) {
         const std::string written(text.substr(e.begin, e.end - e.begin));
         const uint64_t line = sources.place({n, e.begin}).line;
