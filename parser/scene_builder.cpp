@@ -43,12 +43,6 @@ int look_up(const std::unordered_map<std::string, int>& names, const std::string
 
 Vec3d three(const Statement& s, size_t first) { return {s.numbers[first], s.numbers[first + 1], s.numbers[first + 2]}; }
 
-Mat4d sixteen(const Statement& s) {
-  Mat4d m;
-  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = s.numbers[static_cast<size_t>(i)];
-  return m;
-}
-
 }  // namespace
 
 SceneBuilder::SceneBuilder(const Sources& sources, Reporter& reporter, std::string folder, const ModelReader* models)
@@ -141,8 +135,8 @@ void SceneBuilder::change_ctm(const Statement& s, const Mat4d& m, bool concatena
 void SceneBuilder::identity(Statement& s) { change_ctm(s, Mat4d(), false); }
 void SceneBuilder::translate(Statement& s) { change_ctm(s, translation(three(s, 0)), true); }
 void SceneBuilder::scale(Statement& s) { change_ctm(s, scaling(three(s, 0)), true); }
-void SceneBuilder::transform(Statement& s) { change_ctm(s, sixteen(s), false); }
-void SceneBuilder::concat_transform(Statement& s) { change_ctm(s, sixteen(s), true); }
+void SceneBuilder::transform(Statement& s) { change_ctm(s, matrix_of_numbers(s.numbers), false); }
+void SceneBuilder::concat_transform(Statement& s) { change_ctm(s, matrix_of_numbers(s.numbers), true); }
 
 void SceneBuilder::rotate(Statement& s) {
   const Vec3d axis = three(s, 1);

@@ -109,6 +109,22 @@ std::optional<Mat4d> looking_at(const Vec3d& eye, const Vec3d& target, const Vec
                -eye.dot(x), -eye.dot(y), -eye.dot(z), 1);
 }
 
+Mat4d matrix_of_numbers(const std::array<double, 16>& numbers) {
+  Mat4d m;
+  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = numbers[static_cast<size_t>(i)];
+  return m;
+}
+
+std::optional<Mat4d> matrix_of_transform(std::string_view directive, const std::array<double, 16>& numbers) {
+  const auto three = [&](size_t i) { return Vec3d(numbers[i], numbers[i + 1], numbers[i + 2]); };
+  if (directive == "Translate") return translation(three(0));
+  if (directive == "Scale") return scaling(three(0));
+  if (directive == "LookAt") return looking_at(three(0), three(3), three(6));
+  if (directive == "Transform" || directive == "ConcatTransform") return matrix_of_numbers(numbers);
+  if (directive == "Rotate" && three(1) != Vec3d(0)) return rotation(numbers[0], three(1));
+  return std::nullopt;
+}
+
 bool is_regular(const Mat4d& m) {
   // A few rounding errors of the elimination itself: a pivot below that is zero for all one can know.
   constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();

@@ -69,19 +69,10 @@ class Accumulator {
   /// False where the statement makes no matrix.
   bool apply(const Statement& s, bool start, bool end) {
     start_ = start, end_ = end;
-    const auto three = [&](size_t i) { return Vec3d(s.numbers[i], s.numbers[i + 1], s.numbers[i + 2]); };
     const std::string_view name = s.row->name;
     if (name == "Identity") return change(Mat4d(), false);
-    if (name == "Translate") return change(translation(three(0)), true);
-    if (name == "Scale") return change(scaling(three(0)), true);
-    if (name == "Rotate") return three(1) != Vec3d(0) && change(rotation(s.numbers[0], three(1)), true);
-    if (name == "LookAt") {
-      const std::optional<Mat4d> m = looking_at(three(0), three(3), three(6));
-      return m && change(*m, true);
-    }
-    Mat4d m;
-    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = s.numbers[static_cast<size_t>(i)];
-    return change(m, name == "ConcatTransform");
+    const std::optional<Mat4d> m = matrix_of_transform(name, s.numbers);
+    return m && change(*m, name != "Transform");
   }
   void invert() { both_ = {both_.start.gjInverse(), both_.end.gjInverse()}; }
   const TransformPair& both() const { return both_; }

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -33,23 +31,6 @@ Vec3d three(const std::array<double, 16>& numbers, size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
 }
 
-Mat4d sixteen(const std::array<double, 16>& numbers) {
-  Mat4d m;
-  for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = numbers[static_cast<size_t>(i)];
-  return m;
-}
-
-/// The matrix of a statement; nothing for one that is no transform, or not a good one.
-std::optional<Mat4d> matrix_of(const Statement& s) {
-  const std::string_view name = s.row->name;
-  if (name == "Translate") return translation(three(s.numbers, 0));
-  if (name == "Scale") return scaling(three(s.numbers, 0));
-  if (name == "LookAt") return looking_at(three(s.numbers, 0), three(s.numbers, 3), three(s.numbers, 6));
-  if (name == "Transform" || name == "ConcatTransform") return sixteen(s.numbers);
-  if (name == "Rotate" && three(s.numbers, 1) != Vec3d(0)) return rotation(s.numbers[0], three(s.numbers, 1));
-  return std::nullopt;
-}
-
 /// The steps to the world's Camera statement, as far as they stand in its file.
 std::vector<Step> steps_to(const Sources& sources, const SceneDescription& world) {
   const SourcePos camera = world.camera.where;
@@ -65,7 +46,7 @@ std::vector<Step> steps_to(const Sources& sources, const SceneDescription& world
     if (read != ReadResult::Good) continue;
     const std::string_view name = s.row->name;
     if (name == "Identity" || name == "Transform" || name == "WorldBegin" || name == "WorldEnd") steps.clear();
-    if (const std::optional<Mat4d> m = matrix_of(s))
+    if (const std::optional<Mat4d> m = matrix_of_transform(name, s.numbers))
       steps.push_back({std::string(name), s.where.offset, s.end, *m, s.numbers});
   }
 }
@@ -266,9 +247,7 @@ std::string write_edit(const Sources& sources, const CameraEdit& edit) {
   if (!edit.problem.empty()) return edit.problem;
   const std::string& path = sources.name(edit.file);
   const std::string_view read = sources.text(edit.file);
-  std::ifstream in(path, std::ios::binary);
-  const std::string now{std::istreambuf_iterator<char>(in), {}};
-  if (!in.is_open() || now != read) return fmt::format("{} is not any more what was read", path);
+  if (!holds_text(path, read)) return fmt::format("{} is not any more what was read", path);
   const std::string text = fmt::format("{}{}{}", read.substr(0, edit.begin), edit.text, read.substr(edit.end));
   const std::string problem = replace_file(path, text);
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);
