@@ -13,8 +13,6 @@
 namespace whit::author {
 namespace {
 
-double srgb_decode(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
-
 /// Digits that matter: the picture of a colour has fewer.
 std::string digits(double v) { return fmt::format("{:g}", std::round(v * 1e5) / 1e5); }
 

@@ -1,6 +1,8 @@
 // The curve of sRGB displays.
 #pragma once
 
+#include <cmath>
+
 #include "core/base/fastmath.h"
 
 namespace whit {
@@ -13,5 +15,8 @@ inline float srgb_encode(float v) {
   const float clamped = v >= 1 ? 1.0f : below_one;
   return v > 0 ? clamped : 0.0f;
 }
+
+/// The other way, of values of at least 0: v / 12.92 up to 0.04045, else ((v + 0.055) / 1.055)^2.4.
+inline double srgb_decode(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
 
 }  // namespace whit

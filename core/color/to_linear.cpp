@@ -11,14 +11,14 @@
 #include <optional>
 
 #include "core/base/plain_text.h"
+#include "core/color/srgb.h"
 
 namespace whit {
 namespace {
 
 namespace ocio = OCIO_NAMESPACE;
 
-// IEC 61966-2-1 and ITU-R BT.709, decoded; of negative values the mirror image.
-double srgb_decode(double v) { return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4); }
+// ITU-R BT.709, decoded; of negative values, here as for sRGB, the mirror image.
 double rec709_decode(double v) { return v < 0.081 ? v / 4.5 : std::pow((v + 0.099) / 1.099, 1 / 0.45); }
 
 template <class Curve>

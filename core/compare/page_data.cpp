@@ -1,6 +1,7 @@
 #include "core/compare/page_data.h"
 
 #include <Imath/half.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -140,6 +141,12 @@ double mean_magnitude(const PicturePair& pair, const std::vector<size_t>& channe
 int step_to(int width, int most_width) { return std::max(1, (width + most_width - 1) / most_width); }
 
 }  // namespace
+
+std::string hex_text(const ColourMap& map) {
+  std::string out;
+  for (const ByteColour& c : map) out += fmt::format("{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
+  return out;
+}
 
 PageSize page_size(const PicturePair& pair) {
   PageSize size;

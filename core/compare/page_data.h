@@ -9,12 +9,16 @@
 #include <string>
 #include <vector>
 
+#include "core/compare/colour_maps.h"
 #include "core/compare/pair.h"
 
 namespace whit {
 
 /// Pictures above so many pixels are reduced, and halfs are preferred to floats above so many.
 inline constexpr size_t kPageMostPixels = size_t{4} << 20, kPageFloatPixels = size_t{256} << 10;
+
+/// A table of colours: six hexadecimal digits of each.
+std::string hex_text(const ColourMap& map);
 
 /// How pictures are reduced for a page: each pixel of it is the mean of `step` x `step` (fewer at the far borders).
 struct PageSize {

@@ -8,6 +8,7 @@
 
 #include "core/base/plain_text.h"
 #include "core/compare/colour_maps.h"
+#include "core/compare/page_data.h"
 #include "core/compare/page_markup.h"
 #include "core/compare/page_row.h"
 #include "core/compare/page_script_base.h"
@@ -22,12 +23,6 @@
 
 namespace whit {
 namespace {
-
-std::string hex(const ColourMap& map) {
-  std::string out;
-  for (const ByteColour& c : map) out += fmt::format("{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-  return out;
-}
 
 std::string inert(const std::string& id, const std::string& text) {
   return text.empty() ? "" : fmt::format("<script type=\"text/plain\" id=\"{}\">{}</script>\n", id, text);
@@ -46,7 +41,7 @@ std::string data_html(const std::vector<const PageRow*>& rows) {
   return out + fmt::format(
                    "<script type=\"application/json\" id=\"rows\">[{}]</script>\n<script type=\"application/json\" "
                    "id=\"maps\">{{\"magma\":\"{}\",\"berlin\":\"{}\"}}</script>\n",
-                   list, hex(kMagma), hex(kBerlin));
+                   list, hex_text(kMagma), hex_text(kBerlin));
 }
 
 std::string head_html(const std::string& title) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/compare/colour_maps.h"
+#include "core/compare/page_data.h"
 #include "core/compare/page_script_base.h"
 #include "core/compare/page_style.h"
 #include "core/compare/page_viewer_style.h"
@@ -14,16 +15,6 @@
 #include "core/watch/page_style.h"
 
 namespace whit {
-namespace {
-
-std::string hex(const ColourMap& map) {
-  std::string out;
-  for (const ByteColour& c : map) out += fmt::format("{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
-  return out;
-}
-
-}  // namespace
-
 std::string watch_page(const std::string& nonce) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
@@ -34,7 +25,7 @@ std::string watch_page(const std::string& nonce) {
   out += fmt::format(
       "<script type=\"application/json\" nonce=\"{0}\" id=\"maps\">{{\"magma\":\"{1}\"}}</script>\n<script "
       "nonce=\"{0}\">\n\"use strict\";\n",
-      nonce, hex(kMagma));
+      nonce, hex_text(kMagma));
   for (const char* piece :
        {kPageScriptBase, kWatchScriptPicture, kWatchScriptPanel, kWatchScriptCamera, kWatchScriptMain})
     out += piece;
