@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -52,6 +53,51 @@ uint64_t end_of_statement(std::string_view text, uint64_t begin) {
   return text.size();
 }
 
+/// A comment and what stands before it.
+struct Comment {
+  uint64_t at = 0, end = 0;
+  uint64_t line = 0;             ///< Where its line begins.
+  bool behind_code = false;      ///< On the same line.
+  bool after_statement = false;  ///< Of the file.
+};
+
+template <class F>
+void for_comments(std::string_view text, const F& f) {
+  Comment here;
+  for (uint64_t at = 0; at < text.size();) {
+    if (text[at] == '\n') {
+      here.line = ++at, here.behind_code = false;
+    } else if (is_space(text[at])) {
+      ++at;
+    } else if (text[at] == '#') {
+      here.at = at, here.end = at = std::min(text.find('\n', at), text.size());
+      f(here);
+    } else {
+      here.behind_code = here.after_statement = true;
+      at = end_of_token(text, at);
+    }
+  }
+}
+
+/// Where the names begin behind "# whit: allow", from the comment's beginning; nothing for other comments.
+std::optional<size_t> names_of(std::string_view comment) {
+  size_t at = 0;
+  for (const std::string_view word : {kMark, std::string_view("allow")}) {
+    at = comment.find_first_not_of(" \t#", at);
+    if (at == std::string_view::npos || !comment.substr(at).starts_with(word)) return std::nullopt;
+    at += word.size();
+  }
+  return at;
+}
+
+/// What a comment is about: its line, the next statement, or before all statements the file.
+std::pair<uint64_t, uint64_t> reach_of(std::string_view text, const Comment& comment) {
+  if (comment.behind_code) return {comment.line, comment.end};
+  if (!comment.after_statement) return {0, kEnd};
+  const uint64_t from = next_token(text, comment.end);
+  return {from, from < text.size() ? end_of_statement(text, from) : from};
+}
+
 }  // namespace
 
 Allowances::Allowances(const Sources& sources) {
@@ -61,53 +107,25 @@ Allowances::Allowances(const Sources& sources) {
 void Allowances::read(uint32_t file, std::string_view text) {
   // Nearly no file has one: whoever has none pays for one search.
   if (text.find(kMark) == std::string_view::npos) return;
-  bool any_statement = false;
-  uint64_t line = 0;  // Where it begins.
-  bool code_on_line = false;
-  for (uint64_t at = 0; at < text.size();) {
-    if (text[at] == '\n') {
-      line = ++at, code_on_line = false;
-      continue;
+  for_comments(text, [&](const Comment& comment) {
+    const std::string_view words = text.substr(comment.at, comment.end - comment.at);
+    const std::optional<size_t> names = names_of(words);
+    if (!names) return;
+    const auto [from, to] = reach_of(text, comment);
+    for (size_t first = *names; (first = words.find_first_not_of(" \t,\r", first)) != std::string_view::npos;) {
+      const size_t end = std::min(words.find_first_of(" \t,\r", first), words.size());
+      take({std::string(words.substr(first, end - first)), file, from, to}, comment.at + first);
+      first = end;
     }
-    if (is_space(text[at])) {
-      ++at;
-      continue;
-    }
-    if (text[at] != '#') {
-      any_statement = code_on_line = true;
-      at = end_of_token(text, at);
-      continue;
-    }
-    const uint64_t end = std::min(text.find('\n', at), text.size());
-    std::string_view comment = text.substr(at, end - at);
-    const uint64_t comment_at = at;
-    at = end;
-    const auto skip = [&comment](std::string_view word) {
-      const size_t first = comment.find_first_not_of(" \t#");
-      if (first == std::string_view::npos || !comment.substr(first).starts_with(word)) return false;
-      comment.remove_prefix(first + word.size());
-      return true;
-    };
-    if (!skip(kMark) || !skip("allow")) continue;
-    uint64_t from = line, to = end;
-    if (!code_on_line && !any_statement) {
-      from = 0, to = kEnd;
-    } else if (!code_on_line) {
-      from = next_token(text, end);
-      to = from < text.size() ? end_of_statement(text, from) : from;
-    }
-    for (size_t i = 0; i < comment.size();) {
-      const size_t first = comment.find_first_not_of(" \t,\r", i);
-      if (first == std::string_view::npos) break;
-      i = std::min(comment.find_first_of(" \t,\r", first), comment.size());
-      const std::string name(comment.substr(first, i - first));
-      if (const std::string problem = problem_of_allowing(name); problem.empty()) {
-        all_.push_back({name, file, from, to});
-      } else {
-        const uint64_t place = comment_at + (end - comment_at - comment.size()) + first;
-        said_.warning({file, place}, problem, suggestion(name, names_that_can_be_allowed()), "warning");
-      }
-    }
+  });
+}
+
+void Allowances::take(Allowance allowance, uint64_t place) {
+  const std::string problem = problem_of_allowing(allowance.name);
+  if (problem.empty()) {
+    all_.push_back(std::move(allowance));
+  } else {
+    said_.warning({allowance.file, place}, problem, suggestion(allowance.name, names_that_can_be_allowed()), "warning");
   }
 }
 

@@ -28,6 +28,8 @@ class Allowances {
     uint64_t begin, end;
   };
   void read(uint32_t file, std::string_view text);
+  /// `place` is where its name stands.
+  void take(Allowance allowance, uint64_t place);
 
   std::vector<Allowance> all_;
   Diagnostics said_;

@@ -5,7 +5,8 @@
 
 #include <algorithm>
 #include <iostream>
-#include <list>
+#include <memory>
+#include <set>
 #include <utility>
 
 #include "core/check/check.h"
@@ -82,10 +83,8 @@ bool is_bad(const Diagnostics& found) {
                      [](const Diagnostic& d) { return d.severity != Severity::Note; });
 }
 
-}  // namespace
-
-int check_command(const Arguments& args) {
-  CheckFlags flags;
+/// Reads the flags and looks at them. True when the command should go on, else `code` is what to exit with.
+bool read_flags(const Arguments& args, CheckFlags& flags, int& code) {
   CommandLine command{
       "whit check",
       "Reports every problem of a scene without rendering, and what it does that its author hardly meant; what a "
@@ -109,59 +108,90 @@ int check_command(const Arguments& args) {
        {"--strict", &flags.strict, "Call everything an error, notes too"},
        {"--list", &flags.list, "List what can be found, and exit"}}};
   add_model_flags(command, flags.model);
-  int code = kDone;
-  if (!parse_arguments(command, args, code)) return code;
-  if (flags.list) return list_findings();
+  if (!parse_arguments(command, args, code)) return false;
   if (flags.scenes.empty()) flags.scenes.push_back("-");
-  if (const std::string problem = flag_problem(flags); !problem.empty()) {
-    say("whit check: " + problem);
-    return kUsage;
-  }
   if (flags.json) flags.format = "json";
+  const std::string problem = flags.list ? "" : flag_problem(flags);
+  if (problem.empty()) return true;
+  say("whit check: " + problem);
+  code = kUsage;
+  return false;
+}
 
-  ReadOptions options = read_options(flags.model);
-  options.read_unplaced = true;
-  CheckOptions wanted;
-  wanted.allowed = flags.allow, wanted.asked_for = flags.also;
-  // Files that are written must not be mapped meanwhile.
-  options.copy_files = flags.fix;
-  Fixer fixer;
-  std::vector<std::string> unfixed;
-  std::list<ParsedFile> files;
-  std::vector<Checked> all;
-  for (const std::string& path : flags.scenes) {
-    if (flags.fix) {
-      CheckOptions of_text = wanted;
-      of_text.build = false;
-      const auto read = [&](const Fixer::Texts& texts) {
-        ReadOptions with_texts = options;
-        with_texts.unsaved = texts;
-        return read_scene(path, with_texts);
-      };
-      const auto problems = fixer.fix(read, [&](const ParsedFile& f) { return check_file(f, path, of_text); });
-      unfixed.insert(unfixed.end(), problems.begin(), problems.end());
-    }
-    const ParsedFile& file = files.emplace_back(read_scene(path, options));
-    Diagnostics found = check_file(file, path, wanted);
-    if (flags.format == "text") found = for_people(found);
-    if (flags.strict) found = strict(found);
-    if (is_bad(found)) code = kNo;
-    if (flags.format == "text") {
+/// One scene after another.
+class Checking {
+ public:
+  explicit Checking(const CheckFlags& flags) : flags_(flags), read_(read_options(flags.model)) {
+    read_.read_unplaced = true;
+    // Files that are written must not be mapped meanwhile.
+    read_.copy_files = flags.fix;
+    wanted_.allowed = flags.allow, wanted_.asked_for = flags.also;
+  }
+
+  void fix(const std::string& path) {
+    CheckOptions of_text = wanted_;
+    of_text.build = false;
+    const auto read = [&](const Fixer::Texts& texts) {
+      ReadOptions with_texts = read_;
+      with_texts.unsaved = texts;
+      return read_scene(path, with_texts);
+    };
+    for (const std::string& problem :
+         fixer_.fix(read, [&](const ParsedFile& f) { return check_file(f, path, of_text); }))
+      unfixed_.insert(problem);
+  }
+
+  void check(const std::string& path) {
+    ParsedFile file = read_scene(path, read_);
+    Diagnostics found = check_file(file, path, wanted_);
+    if (is_text()) found = for_people(found);
+    if (flags_.strict) found = strict(found);
+    bad_ = bad_ || is_bad(found);
+    if (is_text()) {
       print_diagnostics(*file.sources, found);
-      files.clear();
     } else {
-      all.push_back({file.sources.get(), std::move(found)});
+      all_.push_back({file.sources.get(), std::move(found)});
+      sources_.push_back(std::move(file.sources));
     }
   }
-  std::sort(unfixed.begin(), unfixed.end());
-  unfixed.erase(std::unique(unfixed.begin(), unfixed.end()), unfixed.end());
-  for (const std::string& problem : unfixed) say("whit check: " + problem);
-  if (!unfixed.empty()) code = kFileError;
-  if (flags.format == "text") return code;
-  std::cout << (flags.format == "json" ? check_as_json(all) : check_as_sarif(all)) << '\n' << std::flush;
-  if (std::cout) return code;
-  say("whit check: cannot write to standard output");
-  return kFileError;
+
+  /// Prints what is for programs, and returns the exit code.
+  int finish() const {
+    for (const std::string& problem : unfixed_) say("whit check: " + problem);
+    const int code = !unfixed_.empty() ? kFileError : bad_ ? kNo : kDone;
+    if (is_text()) return code;
+    std::cout << (flags_.format == "json" ? check_as_json(all_) : check_as_sarif(all_)) << '\n' << std::flush;
+    if (std::cout) return code;
+    say("whit check: cannot write to standard output");
+    return kFileError;
+  }
+
+ private:
+  bool is_text() const { return flags_.format == "text"; }
+
+  const CheckFlags& flags_;
+  ReadOptions read_;
+  CheckOptions wanted_;
+  Fixer fixer_;
+  bool bad_ = false;
+  std::set<std::string> unfixed_;
+  std::vector<Checked> all_;
+  std::vector<std::unique_ptr<Sources>> sources_;  ///< That these refer to.
+};
+
+}  // namespace
+
+int check_command(const Arguments& args) {
+  CheckFlags flags;
+  int code = kDone;
+  if (!read_flags(args, flags, code)) return code;
+  if (flags.list) return list_findings();
+  Checking checking(flags);
+  for (const std::string& path : flags.scenes) {
+    if (flags.fix) checking.fix(path);
+    checking.check(path);
+  }
+  return checking.finish();
 }
 
 }  // namespace whit
