@@ -32,7 +32,8 @@ class Install(unittest.TestCase):
                          "share/zsh/site-functions/_whit", "share/fish/vendor_completions.d/whit.fish"):
                 self.assertIn(name, files)
                 self.assertGreater(os.path.getsize(os.path.join(prefix, name)), 1000, name)
-            self.assertTrue(any(f.startswith("lib") and f.endswith("/whit/whit_oiio.so") for f in files), files)
+            for module in ("whit_oiio.so", "whit_http.so"):
+                self.assertTrue(any(f.startswith("lib") and f.endswith("/whit/" + module) for f in files), files)
             scene = os.path.join(folder, "scene.pbrt")
             with open(scene, "w", encoding="utf-8") as f:
                 f.write(SCENE)
@@ -41,8 +42,11 @@ class Install(unittest.TestCase):
             moved = os.path.join(folder, "moved")
             os.rename(prefix, moved)
             whit = os.path.join(moved, "bin", "whit")
-            with open(whit, "rb") as f:
-                self.assertNotIn(("\0" + os.path.realpath(BUILD) + "\0").encode(), f.read())
+            # Debugging information, which a build with sanitizers has, may name it; the loader must not look there.
+            dynamic = subprocess.run(["readelf", "-d", whit], capture_output=True, text=True, timeout=60, check=True).stdout
+            paths = [line for line in dynamic.split("\n") if "PATH)" in line]
+            self.assertEqual(len(paths), 1, dynamic)
+            self.assertNotIn(os.path.realpath(BUILD), paths[0])
             done = subprocess.run([whit, scene, "--quiet", "-o", os.path.join(folder, "out.tiff")], capture_output=True,
                                   text=True, timeout=60, check=False)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
