@@ -7,11 +7,13 @@
 
 namespace whit {
 
-/// Writes to a temporary file next to `path`; commit() renames it, anything else removes it. The first
-/// failure is kept and makes commit() fail, so callers need not check every write.
+/// Writes to a file without a name in the folder of `path`, or, where the file system has no such files, to a hidden one;
+/// commit() gives it the name, anything else leaves nothing behind. A process that is killed may leave a hidden file: the
+/// next one that writes to that name removes it. The first failure is kept and makes commit() fail, so callers need not
+/// check every write.
 class AtomicFile {
  public:
-  /// Creates the temporary file. A symbolic link is followed: its target is replaced, not the link.
+  /// Creates the file. A symbolic link is followed: its target is replaced, not the link.
   explicit AtomicFile(const std::string& path);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
@@ -36,9 +38,13 @@ class AtomicFile {
   const std::string& failure() const { return failure_; }
 
  private:
+  void open_temporary();
+  void give_name();
   void fail(int error_number);
 
-  std::string target_, temporary_, failure_;
+  std::string target_;
+  std::string temporary_;  ///< "" where the file has no name.
+  std::string failure_;
   int64_t size_ = 0;
   int fd_ = -1;
 };
