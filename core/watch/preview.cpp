@@ -22,7 +22,7 @@
 #include "core/render/film_render.h"
 #include "core/render/look.h"
 #include "core/scene/problems.h"
-#include "core/session/output.h"
+#include "core/session/files.h"
 #include "core/watch/effect_costs.h"
 #include "core/watch/halves.h"
 #include "core/watch/watched_files.h"
@@ -127,24 +127,9 @@ std::vector<std::string> files_of(const std::string& path, const ParsedFile& fil
   const auto add = [&](const std::string& name) {
     if (!name.empty() && std::find(files.begin(), files.end(), name) == files.end()) files.push_back(name);
   };
-  for (uint32_t i = 0; i < file.sources->size(); ++i) {
-    std::error_code failed;
-    if (std::filesystem::is_regular_file(file.sources->name(i), failed)) add(file.sources->name(i));
-  }
-  for (const std::string& model : file.models) {
-    add(model);
-    for (const std::string& part : files_of_model(model)) add(part);
-  }
+  for (const std::string& text : texts_of(file)) add(text);
   for (const std::string& missing : missing_includes(*file.sources, file.said, path)) add(missing);
-  std::vector<std::string> named;
-  for (const SceneDescription& world : file.worlds) {
-    const std::vector<std::string> more = files_read(world);
-    named.insert(named.end(), more.begin(), more.end());
-    for (const UnreadFile& unread : world.unread_files) named.push_back(unread.path);
-  }
-  // There may be a hundred thousand: in order, each once.
-  std::sort(named.begin(), named.end());
-  named.erase(std::unique(named.begin(), named.end()), named.end());
+  const std::vector<std::string> named = assets_of(file);
   std::copy_if(named.begin(), named.end(), std::back_inserter(files), [&, first = files](const std::string& n) {
     return std::find(first.begin(), first.end(), n) == first.end();
   });

@@ -12,9 +12,6 @@ namespace whit {
 /// What a scene includes and could not be opened, by what was said of it. `path` is the main file.
 std::vector<std::string> missing_includes(const Sources& sources, const Diagnostics& said, const std::string& path);
 
-/// Which files of the disk a model is made of beside its own: what its buffers and pictures name.
-std::vector<std::string> files_of_model(const std::string& path);
-
 /// Watches files; watch() and wake() may be called while another thread is in wait().
 class FileWatch {
  public:

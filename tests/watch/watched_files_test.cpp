@@ -108,25 +108,5 @@ TEST_P(Watched, WakesUp) {
 INSTANTIATE_TEST_SUITE_P(Ways, Watched, testing::Bool(),
                          [](const auto& way) { return way.param ? "inotify" : "looking"; });
 
-TEST(WatchedFiles, AModelsBuffersAndPictures) {
-  const Folder folder;
-  const std::string path = folder.path("m.gltf");
-  put(path, R"({"buffers": [{"uri": "a%20b.bin"}, {"uri": "data:,x"}, {}], "images": [{"uri": "t/c.png"}, 3]})");
-  EXPECT_EQ(files_of_model(path), (Names{folder.path("a b.bin"), folder.path("t/c.png")}));
-  put(path, "{");
-  EXPECT_EQ(files_of_model(path), Names{});
-  // A .glb: 12 bytes of head, the length of the JSON (31) and its kind, and the JSON.
-  const std::string json = R"({"buffers": [{"uri": "b.bin"}]})";
-  ASSERT_EQ(json.size(), 31u);
-  std::string glb("glTF\2\0\0\0\x33\0\0\0\x1f\0\0\0JSON", 20);
-  glb.append(json);
-  put(folder.path("m.glb"), glb);
-  EXPECT_EQ(files_of_model(folder.path("m.glb")), Names{folder.path("b.bin")});
-  for (size_t n = 0; n < glb.size(); ++n) {
-    put(folder.path("m.glb"), glb.substr(0, n));
-    EXPECT_EQ(files_of_model(folder.path("m.glb")), Names{}) << n;
-  }
-}
-
 }  // namespace
 }  // namespace whit
