@@ -112,6 +112,14 @@ void UnitNoise::look(const FilmRender& film, std::span<const FilmRender::Unit> u
   }
 }
 
+void UnitNoise::save(ByteWriter& out) const {
+  for (const std::vector<Noise>& unit : known_) out.list(std::span(unit));
+}
+
+void UnitNoise::restore(ByteReader& in) {
+  for (std::vector<Noise>& unit : known_) unit = in.list<Noise>();
+}
+
 std::vector<Allotment> UnitNoise::allotments(std::span<const FilmRender::Unit> units) const {
   std::vector<Noise> noise(units.size());
   double area = 0, mean = 0, square = 0, error2 = 0;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/render/film_render.h"
 
 namespace whit {
@@ -47,6 +48,10 @@ class UnitNoise {
   std::vector<Allotment> allotments(std::span<const FilmRender::Unit> units) const;
 
   std::span<const double> areas() const { return areas_; }
+
+  /// What the looks have told, to bytes and back, for the same number of units.
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
 
  private:
   /// Of one sample of a pixel: the variance, channels together, and the squared standard error of that figure.

@@ -33,16 +33,22 @@ class TargetRender {
       : request_(request),
         reach_(reach_of(*world.scene)),
         deadline_(request.deadline.value_or(Clock::time_point::max())),
+        keeper_(options.keeper),
         film_(*world.scene, with_progress(options, world)),
         units_(film_.units()),
         noise_(units_),
         areas_(noise_.areas()),
-        pixels_(std::accumulate(areas_.begin(), areas_.end(), 0.0)) {}
+        pixels_(std::accumulate(areas_.begin(), areas_.end(), 0.0)) {
+    usable_ = !keeper_ || keeper_->begin(film_);
+    if (usable_ && film_.restored()) recall();
+  }
 
   TargetOutcome run() {
     // A film may be without pixels: by a narrow crop, or by the integrator's bounds.
+    if (!usable_) return std::move(out_);
     out_.end = units_.empty() ? TargetEnd::Samples : first_pass();
     if (out_.end == TargetEnd::Met) out_.end = request_.error > 0 ? approach() : use_time();
+    if (keeper_) keeper_->end(film_, out_.end == TargetEnd::Met || out_.end == TargetEnd::Samples);
     finish();
     return std::move(out_);
   }
@@ -74,7 +80,7 @@ class TargetRender {
       const double all = std::chrono::duration<double>(deadline_ - start_).count();
       state.share = 1 - std::max(0.0, seconds_until(deadline_)) / std::max(all, 1e-9);
     }
-    if (request_.error > 0) state.share = std::max(state.share, (samples() + pass) / std::max(expected_, 1.0));
+    if (request_.error > 0) state.share = std::max(state.share, (samples() + pass) / std::max(plan_.expected, 1.0));
     state.share = std::min(state.share, 1.0);
     return request_.progress(state);
   }
@@ -95,11 +101,31 @@ class TargetRender {
   /// Seconds that so many more samples take.
   double seconds_for(double more) const { return more * rate_; }
 
+  // ---- What a film that is kept has in its note: what was known when its last pass began ----
+
+  std::string known() const {
+    std::string note;
+    ByteWriter out([&](const void* bytes, size_t size) { note.append(static_cast<const char*>(bytes), size); });
+    out.value(plan_);
+    noise_.save(out);
+    return note;
+  }
+
+  /// From the note. The pass that was under way then is the first to come.
+  void recall() {
+    if (film_.note().empty()) return;
+    ByteReader in(film_.note());
+    plan_ = in.value<Plan>();
+    noise_.restore(in);
+    units_ = film_.units();
+    goes_on_ = true;
+  }
+
   /// Extends the film; false when it was stopped. `want` by unit.
   bool pass(const std::vector<uint32_t>& want) {
     pass_samples_ = added(want), pass_share_ = 0;
     const auto start = Clock::now();
-    const bool complete = film_.extend(want);
+    const bool complete = std::exchange(goes_on_, false) ? film_.go_on() : film_.extend(want, known());
     units_ = film_.units();
     // The dearest of the last passes: the next is not to be late.
     const double rate = std::chrono::duration<double>(Clock::now() - start).count() / std::max(pass_samples_, 1.0);
@@ -115,17 +141,21 @@ class TargetRender {
 
   /// Met: done. Where there is a deadline the samples come in small passes, so that there is a picture early.
   TargetEnd first_pass() {
-    uint32_t first = std::min(kFirstPass, request_.max_samples);
-    expected_ = pixels_ * first;
-    for (uint32_t n = std::min(kFirstLook, first);;) {
-      const double more = pixels_ * (n - units_.front().samples);
+    uint32_t &n = plan_.first_samples, &first = plan_.first_pass;
+    if (!goes_on_) first = std::min(kFirstPass, request_.max_samples), n = std::min(kFirstLook, first);
+    else if (plan_.first_is_over) return TargetEnd::Met;
+    if (plan_.expected == 0) plan_.expected = pixels_ * first;
+    while (true) {
+      const double more = pixels_ * (n - std::min(n, units_.front().samples));
       if (rate_ > 0 && seconds_for(more) > seconds_until(deadline_)) return use_time();
       if (!pass(n)) return stopped();
       write_early();
       if (n == kFirstLook && request_.error > 0) first = std::min(first, samples_of_first_pass());
-      if (n == first) return TargetEnd::Met;
+      if (n == first) break;
       n = std::min(2 * n, first);  // doubled, so that blocks of samples stay nets
     }
+    plan_.first_is_over = true;
+    return TargetEnd::Met;
   }
 
   /// By a first look, which is no test of anything.
@@ -165,6 +195,8 @@ class TargetRender {
 
   /// Doubles all samples while there is time, and ends with what of the next doubling fits.
   TargetEnd use_time() {
+    plan_.first_is_over = true;
+    if (goes_on_ && !pass(units_.front().samples)) return stopped();
     while (true) {
       const uint32_t have = units_.front().samples;
       const double left = seconds_until(deadline_) / std::max(rate_ * pixels_, 1e-30);
@@ -186,6 +218,7 @@ class TargetRender {
 
   /// Looks, and adds samples where they are needed, until the target is met.
   TargetEnd approach() {
+    if (goes_on_ && !pass(units_.front().samples)) return stopped();
     while (true) {
       if (look()) return TargetEnd::Met;
       if (!tell()) return TargetEnd::Stopped;
@@ -203,12 +236,12 @@ class TargetRender {
   /// so that all together are wrong as seldom as is asked for: the k-th a k (k + 1)-th of it.
   bool look() {
     observe();
-    const double n = tests_ + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
+    const double n = plan_.tests + 1, confidence = 1 - (1 - request_.confidence) / (n * (n + 1));
     if (is_far_above(confidence)) return false;
-    doubts_ = doubts_now(), doubted_at_ = samples();
+    doubts_ = doubts_now(), plan_.doubted_at = samples();
     claim_ = claim_error(picture_, variance_, doubts_, confidence);
     if (!(claim_.value <= request_.error) || !are_enough()) return false;
-    ++tests_;
+    ++plan_.tests;
     return claim_.high <= request_.error;
   }
 
@@ -221,7 +254,7 @@ class TargetRender {
 
   /// Doubts take longer to find than some passes take. What is noisiest may be doubted, so they are found now and then.
   bool is_far_above(double confidence) {
-    if (samples() >= 2 * doubted_at_) return false;
+    if (samples() >= 2 * plan_.doubted_at) return false;
     doubts_ = {std::vector<uint8_t>(variance_.size() / 3), 0, {}, {}};
     claim_ = claim_error(picture_, variance_, doubts_, confidence);
     return claim_.value > kFarAbove * request_.error;
@@ -233,9 +266,9 @@ class TargetRender {
     const auto sum_at = [&](double error) { return 3 * pixels * error * error * mean * mean; };
     const double sure = claim_.high > 0 && std::isfinite(claim_.high) ? claim_.value / claim_.high : 0.9;
     const double aim = 0.97 * sure * request_.error;
-    expected_ = 0;
+    plan_.expected = 0;
     const std::vector<double> in_the_end = allot(parts, sum_at(aim), request_.max_samples);
-    for (size_t u = 0; u < parts.size(); ++u) expected_ += parts[u].area * in_the_end[u];
+    for (size_t u = 0; u < parts.size(); ++u) plan_.expected += parts[u].area * in_the_end[u];
     // One doubling ahead and no further: errors of nets fall faster than their first blocks say.
     const double sum = sum_at(std::max(aim, claim_.value * M_SQRT1_2));
     std::vector<uint32_t> want = next_samples(parts, sum, request_.max_samples, kFirstPass);
@@ -301,8 +334,8 @@ class TargetRender {
   const Clock::time_point start_ = Clock::now();
   Clock::time_point deadline_;
   double pass_share_ = 0, pass_samples_ = 0;  ///< Of the pass that is running.
-  double expected_ = 0;                       ///< Samples that the target seems to take, over all pixels.
   ErrorClaim claim_{std::numeric_limits<double>::infinity(), 0, std::numeric_limits<double>::infinity(), 0};
+  FilmKeeper* const keeper_;
   FilmRender film_;
   std::vector<FilmRender::Unit> units_;
   UnitNoise noise_;
@@ -314,8 +347,17 @@ class TargetRender {
   Picture picture_;          ///< and what it said.
   std::vector<float> variance_;
   Doubts doubts_;
-  int tests_ = 0;
-  double doubted_at_ = 0;  ///< Samples over all pixels when doubts were found last.
+  /// What the next pass depends on, beside the film and what is known of its noise.
+  struct Plan {
+    uint32_t first_samples = 0, first_pass = 0;  ///< Of the first pass: up to where it is, and where it ends.
+    bool first_is_over = false;
+    int tests = 0;
+    double expected = 0;    ///< Samples that the target seems to take, over all pixels.
+    double doubted_at = 0;  ///< Samples over all pixels when doubts were found last.
+  };
+  Plan plan_;
+  bool usable_ = true;    ///< What was kept is of such a film.
+  bool goes_on_ = false;  ///< The next pass is the rest of one that was under way in a film that was kept.
   TargetOutcome out_;
 };
 

@@ -83,9 +83,38 @@ const float* AovTile::nearest(int x, int y) const {
   return std::isfinite(distance_[pixel]) ? &nearest_[(plan_.columns.size() - plan_.means) * pixel] : nullptr;
 }
 
+void AovTile::save(ByteWriter& out) const {
+  out.numbers(std::span(sums_));
+  for (const auto& matte : coverage_) {
+    for (const std::vector<Coverage>& pixel : matte) {
+      out.value(static_cast<uint32_t>(pixel.size()));
+      for (const Coverage& c : pixel) out.value(c.id), out.value(c.weight);
+    }
+  }
+  out.numbers(std::span(distance_));
+  out.numbers(std::span(nearest_));
+  out.numbers(std::span(samples_));
+}
+
+void AovTile::restore(ByteReader& in, std::span<const size_t> things) {
+  in.numbers(std::span(sums_));
+  for (size_t matte = 0; matte < coverage_.size(); ++matte) {
+    for (std::vector<Coverage>& pixel : coverage_[matte]) {
+      pixel.clear();
+      for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) {
+        const auto id = in.value<uint32_t>();
+        if (id >= things[matte]) in.fail();
+        pixel.push_back({id, in.value<double>()});
+      }
+    }
+  }
+  in.numbers(std::span(distance_));
+  in.numbers(std::span(nearest_));
+  in.numbers(std::span(samples_));
+}
+
 namespace {
 
-/// All units as one picture.
 /// (integral of f)^2 / integral of f^2 in pixels: the variance of a sum of neighbours over the sum of their variances.
 double noise_area(const Filter& filter) {
   constexpr int kSteps = 256;
@@ -102,6 +131,7 @@ double noise_area(const Filter& filter) {
   return squares > 0 ? sum * sum * step / squares : 1;
 }
 
+/// All units as one picture.
 class Resolver {
  public:
   Resolver(const Scene& scene, const AovPlan& plan, const std::vector<AovTile>& tiles, const FilmUnits& film,

@@ -39,6 +39,11 @@ class AovTile {
   /// How many of the pixel's own samples were usable, if somebody asks.
   int64_t samples(int x, int y) const { return samples_[own(x, y)]; }
 
+  /// All of it to bytes, and back into a tile of the same size. `things`: how many numbers each matte knows; a larger one
+  /// fails the reader.
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in, std::span<const size_t> things);
+
  private:
   size_t own(int x, int y) const { return static_cast<size_t>((y - y0_) * size_ + x - x0_); }
   void add_sums(const SampleChunk& chunk, int sample);

@@ -120,6 +120,16 @@ void TileSums::halve_blocks() {
   }
 }
 
+void TileSums::save(ByteWriter& out) const {
+  out.numbers(std::span<const double>(sums_, 4 * reach_.pixels()));
+  out.numbers(std::span(blocks_));
+}
+
+void TileSums::restore(ByteReader& in) {
+  in.numbers(std::span(sums_, 4 * reach_.pixels()));
+  in.numbers(std::span(blocks_));
+}
+
 void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
   const auto width = static_cast<size_t>(picture.width());
   picture.rgb.resize(3 * width * static_cast<size_t>(picture.height()));

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/vec.h"
 #include "core/batch/lanes.h"
 #include "core/plugin/filter.h"
@@ -133,6 +134,10 @@ class TileSums {
   const float* blocks_at(int x, int y) const {
     return reach_.holds(x, y) ? &blocks_[4 * kBlocks * static_cast<size_t>(reach_.number(x, y))] : nullptr;
   }
+
+  /// All of it to bytes, and back into sums of the same size.
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
 
  private:
   static constexpr int kBatch = 256;  ///< So many samples are looked at together.

@@ -7,8 +7,10 @@
 #include <time.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <numeric>
+#include <utility>
 
 #include "core/batch/zero_pages.h"
 #include "core/render/flush_denormals.h"
@@ -62,6 +64,7 @@ TileGrid grid_over(const Box2i& pixels, bool adaptive) {
 struct UnitPass {
   uint32_t have = 0, want = 0;
   bool doubled = false;  ///< As many again: they are the last two blocks.
+  bool begun = false;    ///< The blocks are ready for them.
 
   uint8_t block(uint32_t sample) const {
     const uint64_t at = sample - have, of = want - have;
@@ -121,6 +124,8 @@ struct FilmRender::Impl {
       }
     }
     have.assign(grid.units(), 0);
+    pass.assign(grid.units(), {});
+    task_locks = std::vector<std::mutex>(tasks());
   }
 
   // ---- Threads ----
@@ -167,7 +172,9 @@ struct FilmRender::Impl {
   std::vector<uint32_t> everywhere(uint32_t samples) const { return std::vector<uint32_t>(grid.units(), samples); }
 
   /// What is to be added to each unit. Units that have as many samples already get none.
-  void begin_pass(std::span<const uint32_t> want) {
+  void begin_pass(std::span<const uint32_t> want, std::string pass_note = {}) {
+    const std::lock_guard lock(pass_lock);
+    note = std::move(pass_note);
     pass.assign(grid.units(), {});
     tasks_done = 0;
     for (size_t u = 0; u < pass.size(); ++u) {
@@ -183,28 +190,39 @@ struct FilmRender::Impl {
     Worker& worker = workers.local();
     worker.start_clock();
     take_alpha_tests();
-    uint32_t from = UINT32_MAX, to = 0;
-    each_unit(task, [&](size_t u) {
-      if (pass[u].have == pass[u].want) return;
-      if (pass[u].doubled) sums[u].halve_blocks();
-      from = std::min(from, pass[u].have), to = std::max(to, pass[u].want);
-    });
-    if (from > to) return report_progress();
+    const auto [from, to] = begin_task(task);
     for (uint32_t at = from; at < to && !stopped;) {
       const uint32_t end = std::min(to, at / round * round + round);
       add_round(worker, task, at, end);
       at = end;
+      if (at < to) report_progress();
     }
-    worker.stop_clock();
-    worker.statistics.alpha_tests += take_alpha_tests();
-    worker_seconds += thread_seconds() - start;
-    if (options.tile_done) preview(task);
+    if (from < to) {
+      worker.stop_clock();
+      worker.statistics.alpha_tests += take_alpha_tests();
+      worker_seconds += thread_seconds() - start;
+      if (options.tile_done) preview(task);
+    }
+    ++tasks_done;
     report_progress();
+  }
+
+  /// The samples that some of a task's units want: from the first on that one lacks, up to the last.
+  std::pair<uint32_t, uint32_t> begin_task(size_t task) {
+    const std::lock_guard lock(task_locks[task]);
+    uint32_t from = UINT32_MAX, to = 0;
+    each_unit(task, [&](size_t u) {
+      if (have[u] == pass[u].want) return;
+      if (pass[u].doubled && !std::exchange(pass[u].begun, true)) sums[u].halve_blocks();
+      from = std::min(from, have[u]), to = std::max(to, pass[u].want);
+    });
+    return {from, to};
   }
 
   /// Adds the samples [from, to) of all of the task's units that want them.
   void add_round(Worker& worker, size_t task, uint32_t from, uint32_t to) {
     Chunk& chunk = chunks.local();
+    const std::lock_guard lock(task_locks[task]);
     each_unit(task, [&](size_t u) {
       const uint32_t first = std::max(from, have[u]), last = std::min(to, pass[u].want);
       if (first >= last) return;
@@ -226,6 +244,8 @@ struct FilmRender::Impl {
       have[u] = last;
     });
     render_chunk(worker, chunk);
+    const std::lock_guard counting(statistics_lock);
+    statistics.add(std::exchange(worker.statistics, {}));
   }
 
   static void close_run(Chunk& chunk, size_t unit) {
@@ -269,6 +289,65 @@ struct FilmRender::Impl {
     return usable;
   }
 
+  // ---- A state of it ----
+
+  /// What a film of the same state has in common with this.
+  std::array<uint64_t, 6> layout() const {
+    return {static_cast<uint64_t>(grid.columns),  static_cast<uint64_t>(grid.rows), static_cast<uint64_t>(grid.size),
+            TileSums::numbers(filter, grid.size), options.blocks ? uint64_t{1} : 0, aovs.columns.size()};
+  }
+
+  void save(ByteWriter& out) const {
+    const std::lock_guard passing(pass_lock);
+    out.value(layout());
+    out.text(note);
+    {
+      const std::lock_guard counting(statistics_lock);
+      out.value(statistics);
+    }
+    out.value(seconds);
+    out.value(worker_seconds.load());
+    for (size_t task = 0; task < tasks(); ++task) {
+      const std::lock_guard lock(task_locks[task]);
+      each_unit(task, [&](size_t u) {
+        out.value(have[u]);
+        out.value(pass[u]);
+        if (have[u] == 0) return;
+        sums[u].save(out);
+        if (aovs.any()) aov_tiles[u].save(out);
+      });
+    }
+  }
+
+  bool restore(ByteReader& in) {
+    if (in.value<decltype(layout())>() != layout()) return false;
+    note = in.text();
+    statistics = in.value<RenderStatistics>();
+    seconds = in.value<double>();
+    worker_seconds = in.value<double>();
+    const std::vector<size_t> things = things_of_mattes();
+    for (size_t task = 0; task < tasks() && in.ok(); ++task) {
+      each_unit(task, [&](size_t u) {
+        have[u] = in.value<uint32_t>();
+        pass[u] = in.value<UnitPass>();
+        if (have[u] < pass[u].have || have[u] > pass[u].want) in.fail();
+        if (have[u] == 0) return;
+        sums[u].restore(in);
+        if (aovs.any()) aov_tiles[u].restore(in, things);
+      });
+    }
+    return in.ok() && in.rest().empty();
+  }
+
+  /// How many numbers there are in each of the columns that cryptomattes are made of.
+  std::vector<size_t> things_of_mattes() const {
+    std::vector<size_t> counts;
+    for (const AovLayer& layer : aovs.layers) {
+      if (layer.row->matte) counts.push_back(layer.row->names(scene, options.aovs.place).size());
+    }
+    return counts;
+  }
+
   // ---- What is seen of it ----
 
   void preview(size_t task) const {
@@ -289,10 +368,9 @@ struct FilmRender::Impl {
   }
 
   void report_progress() {
-    const size_t done = ++tasks_done;
     if (!options.progress) return;
     std::unique_lock lock(progress_mutex, std::try_to_lock);
-    if (lock && !options.progress(static_cast<double>(done) / static_cast<double>(tasks()))) stopped = true;
+    if (lock && !options.progress(static_cast<double>(tasks_done) / static_cast<double>(tasks()))) stopped = true;
   }
 
   /// One over the units' numbers of samples; nothing where all have the same.
@@ -314,6 +392,16 @@ struct FilmRender::Impl {
     return pixels > 0 ? samples / pixels : 0.0;
   }
 
+  /// Of the samples that are wanted.
+  double share() const {
+    double samples = 0, all = 0;
+    for (size_t u = 0; u < have.size(); ++u) {
+      const auto area = static_cast<double>(unit(u).area());
+      samples += area * have[u], all += area * std::max(have[u], pass[u].want);
+    }
+    return all > 0 ? samples / all : 1.0;
+  }
+
   float film_scale() const { return static_cast<float>(scene.film().scale()); }
 
   const Scene& scene;
@@ -331,6 +419,13 @@ struct FilmRender::Impl {
   std::vector<AovTile> aov_tiles;  ///< As many, or none.
   std::vector<uint32_t> have;      ///< Samples per pixel of each unit.
   std::vector<UnitPass> pass;
+  std::string note;
+  bool restored = false;
+  mutable std::mutex pass_lock;  ///< Of what a pass begins with; taken before a task's.
+  /// Of all that a task's units have; between rounds nobody needs it, and it is as a state may be saved.
+  mutable std::vector<std::mutex> task_locks;
+  RenderStatistics statistics;  ///< Of all rounds that are done.
+  mutable std::mutex statistics_lock;
   std::atomic<size_t> tasks_done{0};
   std::atomic<bool> stopped{false};
   std::mutex progress_mutex;
@@ -352,8 +447,12 @@ int64_t FilmRender::Unit::area() const {
 
 bool FilmRender::extend(uint32_t samples) { return extend(impl_->everywhere(samples)); }
 
-bool FilmRender::extend(std::span<const uint32_t> samples) {
-  impl_->begin_pass(samples);
+bool FilmRender::extend(std::span<const uint32_t> samples, std::string note) {
+  impl_->begin_pass(samples, std::move(note));
+  return go_on();
+}
+
+bool FilmRender::go_on() {
   FilmRender* const self = this;
   return extend_tasks(std::span(&self, 1));
 }
@@ -425,8 +524,10 @@ RenderResult FilmRender::result() const {
                                  {of.grid, of.filter, of.sums, weights, -1}, result.picture.window);
     });
   }
+  result.statistics = of.statistics;
   for (const Worker& w : of.workers) result.statistics.add(w.statistics);
   result.samples_per_pixel = of.samples_per_pixel();
+  result.share = of.share();
   result.threads = of.threads();
   result.cpu_seconds = cpu_seconds();
   result.seconds = of.seconds + std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -434,6 +535,18 @@ RenderResult FilmRender::result() const {
 }
 
 double FilmRender::cpu_seconds() const { return impl_->worker_seconds; }
+
+bool FilmRender::restored() const { return impl_->restored; }
+const std::string& FilmRender::note() const { return impl_->note; }
+
+uint32_t FilmRender::wanted() const {
+  uint32_t most = 0;
+  for (const UnitPass& p : impl_->pass) most = std::max(most, p.want);
+  return most;
+}
+
+void FilmRender::save(ByteWriter& out) const { impl_->save(out); }
+bool FilmRender::restore(ByteReader& in) { return impl_->restored = impl_->restore(in); }
 
 std::vector<FilmRender::Unit> FilmRender::units() const {
   std::vector<Unit> units;

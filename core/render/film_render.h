@@ -8,6 +8,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/render/render.h"
@@ -30,11 +31,27 @@ class FilmRender {
   /// Adds samples until every unit has `samples` of them per pixel. False when RenderOptions::progress stopped it;
   /// units may then have different numbers of samples, and the picture is still one.
   bool extend(uint32_t samples);
-  /// The same, with a number for each unit; those that have as many stay as they are.
-  bool extend(std::span<const uint32_t> samples);
+  /// The same, with a number for each unit; those that have as many stay as they are. `note` is kept with what save()
+  /// says of this pass, for whoever decides about the next.
+  bool extend(std::span<const uint32_t> samples, std::string note = {});
   /// Extends several films of one size, tile by tile in turn, so that the machine's moods meet all alike. They must have
   /// the same pixels and kind of units.
   static bool extend_in_turn(std::span<FilmRender* const> films, uint32_t samples);
+
+  /// All that there is, in the middle of a pass too: from any thread, while others render. A pass cannot begin
+  /// meanwhile, and tiles wait for each other no longer than it takes to copy one.
+  void save(ByteWriter& out) const;
+  /// Makes a film on which nothing was rendered what another was of which this is the state: one of the same scene and
+  /// options. False, and the film is of no use, when it is not.
+  bool restore(ByteReader& in);
+  /// Ends the pass that was under way in a state that was restored; what comes of it has the bits that it would have had
+  /// there. As extend().
+  bool go_on();
+  /// Whether it was restored; and the note of the last pass.
+  bool restored() const;
+  const std::string& note() const;
+  /// The most samples that a unit was to have by now.
+  uint32_t wanted() const;
 
   /// The picture by now, with AOVs and statistics. Passes may follow.
   RenderResult result() const;

@@ -18,7 +18,13 @@ Box2i crop_pixels(const Vec2i& resolution, const double crop[4]) {
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {
   FilmRender film(scene, options);
-  const bool complete = film.extend(static_cast<uint32_t>(scene.samples_per_pixel));
+  const bool usable = !options.keeper || options.keeper->begin(film);
+  bool complete = usable && film.go_on();
+  if (complete) {
+    const uint32_t wanted = std::max(static_cast<uint32_t>(scene.samples_per_pixel), film.wanted());
+    complete = film.extend(wanted + options.more_samples);
+  }
+  if (options.keeper && usable) options.keeper->end(film, complete);
   RenderResult result = film.result();
   result.complete = complete;
   return result;

@@ -6,6 +6,7 @@
 
 #include "core/render/aov_film.h"
 #include "core/render/film_buffer.h"
+#include "core/render/film_keeper.h"
 #include "core/render/statistics.h"
 #include "core/scene/scene.h"
 
@@ -24,6 +25,8 @@ struct RenderOptions {
   /// Called from any worker when a tile's own samples are done: its window and linear RGB, row by row, without what
   /// the neighbours' samples add within the filter's reach. For previews.
   std::function<void(const Box2i&, std::span<const float>)> tile_done{};
+  FilmKeeper* keeper = nullptr;  ///< Keeps the film's state meanwhile, and may have an earlier one's.
+  uint32_t more_samples = 0;     ///< Beyond those that the scene, or the film that was kept, was to have.
 };
 
 struct RenderResult {
@@ -35,6 +38,7 @@ struct RenderResult {
   double cpu_seconds = 0;        ///< The same of the processors, added up over threads.
   int threads = 1;
   bool complete = true;  ///< False when progress() stopped it.
+  double share = 1;      ///< Of the samples that were wanted, those that there are.
 };
 
 /// The pixels a render covers: the film's crop, or the one given; x1 and y1 exclusive.

@@ -1,0 +1,22 @@
+#include "core/image/checksum.h"
+
+#include <fmt/format.h>
+#include <isa-l/crc64.h>
+
+#include "core/plugin/mapped_file.h"
+
+namespace whit {
+
+uint64_t checksum(std::string_view bytes, uint64_t before) {
+  return crc64_ecma_refl(before, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+}
+
+std::optional<uint64_t> file_checksum(const std::string& path) {
+  const MappedFile file(path);
+  if (!file.error().empty()) return {};
+  return checksum(file.bytes());
+}
+
+std::string checksum_text(uint64_t sum) { return fmt::format("{:016x}", sum); }
+
+}  // namespace whit
