@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <iostream>
 #include <new>
 #include <system_error>
 
@@ -77,12 +81,22 @@ int dispatch(const Arguments& args) {
   return code == kDone ? render_command(args) : code;
 }
 
+/// What was printed may still be on its way: a full disk shows only now.
+int finish(int code) {
+  const bool printed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (printed && std::cout.flush()) return code;
+  say("whit: cannot write to standard output");
+  return std::max<int>(code, kFileError);
+}
+
 }  // namespace
 }  // namespace whit
 
 int main(int argc, char** argv) {
+  // A file that grows beyond its limit is an error of writing, with a message, and no reason to die.
+  std::signal(SIGXFSZ, SIG_IGN);
   try {
-    return whit::dispatch({argv + 1, argv + argc});
+    return whit::finish(whit::dispatch({argv + 1, argv + argc}));
   } catch (const std::bad_alloc&) {
     whit::say("whit: out of memory");
     return whit::kLimit;
