@@ -4,7 +4,6 @@
 #include <tbb/global_control.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <ctime>
 #include <fstream>
 #include <memory>
@@ -15,6 +14,7 @@
 #include "tools/whit/load.h"
 #include "tools/whit/model_flags.h"
 #include "tools/whit/quantities.h"
+#include "tools/whit/stop_signals.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/text_file.h"
 
@@ -49,24 +49,6 @@ std::string file_problem(const CostFlags& flags) {
   return {};
 }
 
-/// Ctrl-C ends the study, which then reports what it has; a second one ends the program.
-volatile std::sig_atomic_t interrupted = 0;
-class Interruptible {
- public:
-  Interruptible() {
-    struct sigaction action = {};
-    action.sa_handler = [](int) { interrupted = 1; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND);
-    sigaction(SIGINT, &action, &before_);
-  }
-  ~Interruptible() { sigaction(SIGINT, &before_, nullptr); }
-  Interruptible(const Interruptible&) = delete;
-  Interruptible& operator=(const Interruptible&) = delete;
-
- private:
-  struct sigaction before_ = {};
-};
-
 /// How the program was called: a command to paste must call it likewise.
 std::string program() {
   std::ifstream command("/proc/self/cmdline");
@@ -76,7 +58,7 @@ std::string program() {
 }
 
 CostStudy study(const CostFlags& flags, ParsedFile& file, CostRequest request) {
-  const Interruptible until_ctrl_c;
+  const StopSignals stop;  // Ctrl-C ends the study, which then reports what it has.
   Progress progress("measuring");
   request.seconds = duration_of(flags.time);
   request.quick = flags.quick, request.all_samplers = flags.all_samplers;
@@ -84,7 +66,7 @@ CostStudy study(const CostFlags& flags, ParsedFile& file, CostRequest request) {
   request.scene_path = flags.scene, request.program = program();
   request.progress = [&](double share, const std::string&) {
     progress.update(share);
-    return interrupted == 0;
+    return !StopSignals::come();
   };
   return study_cost(file, 0, request);
 }
@@ -123,7 +105,7 @@ int run(const CostFlags& flags, const CostRequest& begun) {
   if (result.said.has_errors()) return exit_code(result.said);
   const int written = write_report(flags, result.report);
   if (written != kDone) return written;
-  if (interrupted != 0) return kLimit;
+  if (StopSignals::come()) return kLimit;
   if (!result.report.settings.empty()) return kDone;
   return result.report.complete ? kNo : kLimit;  // Nothing can be told of this picture, or not in this time.
 }

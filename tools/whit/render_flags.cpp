@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <type_traits>
+#include <variant>
 
 #include "core/render/aovs.h"
+#include "core/session/checkpoint.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
@@ -52,12 +55,20 @@ std::string take_stats_file(Arguments& args, std::string& file) {
   return {};
 }
 
-/// The command without what a picture does not depend on, so that equal pictures are equal files: where it goes, what is said
-/// of it, how many threads make it.
+/// Flags that a picture does not depend on: where it goes, what is said of it, how many threads make it, whether it was
+/// stopped in between.
+const std::vector<std::string> kBesideWithValue{
+    "--outfile",     "-o",  "--display",    "--nthreads", "--json",  "--display-server", "--logdir",
+    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume"};
+const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose"};
+/// Of the others, those that samples do not depend on: how they become a picture, how many are added, and how long that
+/// may take.
+const std::vector<std::string> kAfterSamples{"scenes",     "--samples", "--time-limit",     "--view",  "--ocio",
+                                             "--exposure", "--type",    "--texture-memory", "--strict"};
+
+/// The command without them, so that equal pictures are equal files.
 std::string picture_command(const Arguments& args) {
-  const std::vector<std::string> with_value{"--outfile",        "-o",       "--display",     "--nthreads", "--json",
-                                            "--display-server", "--logdir", "--minloglevel", "--v"};
-  const std::vector<std::string> alone{"--quiet", "--stats", "--verbose"};
+  const std::vector<std::string>&with_value = kBesideWithValue, &alone = kBeside;
   const auto is_in = [](const std::vector<std::string>& names, const std::string& word) {
     return std::find(names.begin(), names.end(), word.substr(0, word.find('='))) != names.end();
   };
@@ -67,6 +78,30 @@ std::string picture_command(const Arguments& args) {
     else if (!is_in(alone, args[i])) command.append(" ").append(args[i]);
   }
   return command;
+}
+
+std::string text_of(const FlagTarget& target) {
+  const auto text = [](const auto& value) {
+    using T = std::decay_t<decltype(value)>;
+    if constexpr (requires { value.has_value(); }) return value ? fmt::format("{}", *value) : std::string();
+    else if constexpr (std::is_same_v<T, std::string>) return value;
+    else if constexpr (requires { value.begin(); }) return fmt::format("{}", fmt::join(value, ","));
+    else return value == T() ? std::string() : fmt::format("{}", value);
+  };
+  return std::visit([&](const auto* at) { return text(*at); }, target);
+}
+
+std::vector<std::pair<std::string, std::string>> flags_of_samples(const std::vector<Flag>& flags) {
+  std::vector<std::pair<std::string, std::string>> out;
+  for (const Flag& flag : flags) {
+    const std::string names = flag.names, name = names.substr(0, names.find(','));
+    const auto is_in = [&](const std::vector<std::string>& list) {
+      return std::find(list.begin(), list.end(), name) != list.end();
+    };
+    if (!is_in(kBesideWithValue) && !is_in(kBeside) && !is_in(kAfterSamples))
+      out.emplace_back(name, text_of(flag.target));
+  }
+  return out;
 }
 
 std::vector<std::string> aov_names() {
@@ -108,6 +143,16 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        &s.target.max_samples,
        "Samples per pixel at most, of --target-error and --time-limit",
        {.least = 1, .most = 1 << 30}},
+      {"--checkpoint",
+       &s.checkpoint.file,
+       "Keep the render's state in this file, to go on from after a kill, a full disk or a Ctrl-C",
+       {.files = ""}},
+      {"--every", &s.checkpoint.every, "How often: 30s, 5min"},
+      {"--resume",
+       &s.checkpoint.resume,
+       "Go on from a checkpoint, and keep it up to date: the picture is that of a render without a stop",
+       {.files = ""}},
+      {"--samples", &s.checkpoint.samples, "With --resume: that many samples per pixel more, +192"},
       {"--json",
        &s.target.json,
        "What --target-error or --time-limit came to, as JSON: a file, or - for stdout",
@@ -161,6 +206,22 @@ std::string usage_problem(const RenderSettings& s, const TargetFlags& t) {
   return {};
 }
 
+/// The same of the flags that keep states.
+std::string usage_problem(const RenderSettings& s, const CheckpointFlags& c) {
+  if (!c.samples.empty() && c.more_samples() == 0)
+    return fmt::format("--samples: \"{}\" adds nothing; write +192 (--spp says how many a render is to have)",
+                       c.samples);
+  if (!c.samples.empty() && c.resume.empty())
+    return "--samples adds to a render that --resume goes on with; --spp says how many samples to take";
+  if (!c.samples.empty() && s.target.any())
+    return "--samples says how many more to take, --target-error and --time-limit how far to go";
+  if (duration_of(c.every) == 0)
+    return fmt::format("--every: \"{}\" is no time above 0; write 30s, 5min or 30", c.every);
+  if (c.any() && s.scenes.size() > 1) return "a checkpoint is of one picture, and here are several scenes";
+  if (c.any() && !s.debug_pixel.empty()) return "--debug-pixel makes no picture that a checkpoint could be of";
+  return {};
+}
+
 /// A flag whose values make no sense is wrong usage.
 std::string usage_problem(const RenderSettings& s) {
   if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
@@ -177,6 +238,7 @@ std::string usage_problem(const RenderSettings& s) {
     return "--stats FILE.json is of pictures, and none is made";
   }
   if (std::string problem = usage_problem(s, s.target); !problem.empty()) return problem;
+  if (std::string problem = usage_problem(s, s.checkpoint); !problem.empty()) return problem;
   for (const std::string& scene : s.scenes) {
     if (std::string problem = usage_problem(s.model, scene); !problem.empty()) return problem;
   }
@@ -196,10 +258,21 @@ std::string file_problem(const RenderSettings& s) {
   for (const std::string& file : {s.stats_file, s.target.json}) {
     if (std::string problem = text_file_problem(file); !problem.empty()) return problem;
   }
+  if (s.checkpoint.any() && s.checkpoint.kept_in() != s.checkpoint.resume)
+    return Checkpoint::reason_against(s.checkpoint.kept_in());
   return {};
 }
 
 }  // namespace
+
+uint32_t CheckpointFlags::more_samples() const {
+  uint32_t n = 0;
+  const char* const end = samples.data() + samples.size();
+  if (samples.size() < 2 || samples[0] != '+') return 0;
+  const auto [stop, error] = std::from_chars(samples.data() + 1, end, n);
+  constexpr uint32_t kMost = 1u << 30;  // as --spp
+  return error == std::errc() && stop == end && n <= kMost ? n : 0;
+}
 
 std::vector<int> numbers_of(const std::string& text) {
   std::vector<int> numbers;
@@ -225,6 +298,7 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   if (problem.empty() && !parse_arguments(command, words, code)) return false;
   for (const std::string& a : args) settings.command_line += (settings.command_line.empty() ? "whit " : " ") + a;
   settings.picture_command = picture_command(words);
+  settings.of_samples = flags_of_samples(command.flags);
   if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;
   if (settings.scenes.empty()) settings.scenes.push_back("-");

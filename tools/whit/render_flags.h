@@ -1,7 +1,9 @@
 // What `whit render` is asked to do.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/session/output.h"
@@ -18,6 +20,16 @@ struct TargetFlags {
   bool any() const { return !error.empty() || !time_limit.empty(); }
 };
 
+/// Keeping the state of a render in a file, and going on from it.
+struct CheckpointFlags {
+  std::string file, every = "30s", resume, samples;  ///< As given; "" for none.
+  bool any() const { return !file.empty() || !resume.empty(); }
+  /// Where the state is kept: where it came from, unless another file is named.
+  const std::string& kept_in() const { return file.empty() ? resume : file; }
+  /// That many samples more than there are, of "+192"; 0 where it is none.
+  uint32_t more_samples() const;
+};
+
 struct RenderSettings {
   std::vector<std::string> scenes;
   OutputRequest output;
@@ -27,6 +39,7 @@ struct RenderSettings {
   EffectFlags effects;
   ModelFlags model;
   TargetFlags target;
+  CheckpointFlags checkpoint;
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;
@@ -37,6 +50,8 @@ struct RenderSettings {
   std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
   std::string command_line;
   std::string picture_command;  ///< The same for the header of pictures: without what they do not depend on.
+  /// Flags that samples depend on, and their values as text: "" where they are not given.
+  std::vector<std::pair<std::string, std::string>> of_samples;
 };
 
 /// Reads the arguments into settings. Returns true when the command should go on; otherwise `code` is what to

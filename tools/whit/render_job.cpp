@@ -15,11 +15,15 @@
 #include <tuple>
 
 #include "core/render/debug_sample.h"
+#include "core/render/film_render.h"
 #include "core/scene/problems.h"
+#include "core/session/checkpoint.h"
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
+#include "tools/whit/quantities.h"
 #include "tools/whit/render_report.h"
 #include "tools/whit/render_target.h"
+#include "tools/whit/stop_signals.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/version.h"
 
@@ -53,12 +57,17 @@ class RenderJob {
       say("whit: " + problem);
       return kUsage;
     }
+    if (settings_.checkpoint.any() && file_.worlds.size() > 1) {
+      say(fmt::format("whit: a checkpoint is of one picture, and {} makes {}", path_, file_.worlds.size()));
+      return kUsage;
+    }
     stats_.expect(file_.worlds.size());
     int worst = kDone;
     for (const SceneDescription& world : file_.worlds) {
       const int code = picture_of(world);
       if (code != kDone && code != kLimit) return code;
       worst = std::max(worst, code);
+      if (StopSignals::come()) break;
       times_ = {}, world_started_ = {};
     }
     return worst;
@@ -193,14 +202,46 @@ class RenderJob {
   }
 
   int trace_and_write(BuiltWorld& built, const OutputPlan& output) {
+    const StopSignals stop;
     DisplayServer viewer;
     const Stopwatch connecting;
-    const RenderOptions options = render_options(built, output.aovs, viewer);
+    RenderOptions options = render_options(built, output.aovs, viewer);
+    if (int code = keep_state(options); code != kDone) return code;
     times_.output += connecting.elapsed();
     times_.ready = times_.program + times_.flags + world_started_.elapsed();
     if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
     const RenderedWorld rendered = trace(built, options);
-    return write_and_say(built, rendered, output, viewer);
+    if (int code = write_and_say(built, rendered, output, viewer); code != kDone) return code;
+    return rendered.result.complete ? kDone : say_stopped(rendered.result);
+  }
+
+  /// Where the flags ask for it, the options' film is kept in a file, and is what was kept before.
+  int keep_state(RenderOptions& options) {
+    const CheckpointFlags& flags = settings_.checkpoint;
+    if (!flags.any()) return kDone;
+    RenderIdentity identity = identity_of(path_, file_);
+    for (const auto& [flag, value] : settings_.of_samples) identity.add(flag, value);
+    checkpoint_ = std::make_unique<Checkpoint>(flags.kept_in(), Checkpoint::Seconds(duration_of(flags.every)),
+                                               std::move(identity));
+    options.keeper = checkpoint_.get(), options.more_samples = flags.more_samples();
+    if (flags.resume.empty()) return kDone;
+    const Checkpoint::Problem problem = checkpoint_->resume(flags.resume);
+    if (problem.trouble == Checkpoint::Trouble::None) return kDone;
+    say("whit: " + problem.text);
+    return problem.trouble == Checkpoint::Trouble::Different ? kUsage : kFileError;
+  }
+
+  /// After a signal: what there is, and how to have the rest.
+  int say_stopped(const RenderResult& result) const {
+    std::string remedy;
+    if (checkpoint_ && checkpoint_->write_problem().empty())
+      remedy = fmt::format("; --resume {} goes on", checkpoint_->path());
+    say(fmt::format("whit: {}{}", stopped_text(result), remedy));
+    return kLimit;
+  }
+
+  static std::string stopped_text(const RenderResult& result) {
+    return fmt::format("stopped by {} with {:.3g} % of the samples", StopSignals::name(), 100 * result.share);
   }
 
   /// To an accuracy, or until time is up.
@@ -215,6 +256,7 @@ class RenderJob {
         });
     if (int code = report_output(early); code != kDone) return code;
     if (int code = write_and_say(built, outcome.rendered, output, viewer); code != kDone) return code;
+    if (StopSignals::come()) say_stopped(outcome.rendered.result);
     return report_target(settings_, outcome,
                          std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count());
   }
@@ -225,9 +267,21 @@ class RenderJob {
     viewer.update(result.picture.window, result.picture.rgb);
     times_.render = rendered.elapsed;
     if (int code = report(rendered.said); code != kDone) return code;
+    if (checkpoint_ && !checkpoint_->fits()) {
+      say(fmt::format("whit: cannot go on from \"{}\": its film is of another kind", settings_.checkpoint.resume));
+      return kFileError;
+    }
+    if (checkpoint_) warn_of_checkpoint();
     const WrittenOutput written = write_output(output, result, metadata(result));
     times_.write = written.elapsed;
-    if (int code = report_output(written.said); code != kDone) return code;
+    if (int code = report_output(written.said); code != kDone) {
+      if (checkpoint_ && checkpoint_->write_problem().empty()) {
+        say(fmt::format(
+            "whit: what was rendered is kept: the same command with --resume {} and another --outfile writes it",
+            checkpoint_->path()));
+      }
+      return code;
+    }
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
     const RenderOutcome outcome{*built.scene, result, output, *built.textures, times_, unread_.size(), parsed_memory_};
     stats_.add(settings_, path_, outcome);
@@ -235,6 +289,11 @@ class RenderJob {
     summarise(outcome, settings_.stats);
     if (!passed_.empty()) name_what_was_passed();
     return kDone;
+  }
+
+  void warn_of_checkpoint() const {
+    const std::string problem = checkpoint_->write_problem();
+    if (!problem.empty()) say("whit: warning: " + problem);
   }
 
   /// The end of a summary where --keep-going went past errors.
@@ -276,7 +335,7 @@ class RenderJob {
     if (!settings_.quiet) progress.emplace("rendering");
     options.progress = [&](double share) {
       if (progress) progress->update(share);
-      return true;
+      return !StopSignals::come();
     };
     return render_world(built, std::move(options));
   }
@@ -292,11 +351,14 @@ class RenderJob {
   }
 
   std::vector<OutputMetadata> metadata(const RenderResult& result) const {
-    return {{"Software", fmt::format("whit {}", version())},
-            {"whit:command", settings_.picture_command},
-            {"whit:scene", path_},
-            {"whit:samplesPerPixel", static_cast<int>(std::lround(result.samples_per_pixel))},
-            {"whit:seed", std::to_string(settings_.seed)}};  // Text, since an OpenEXR int ends at half of the seeds.
+    std::vector<OutputMetadata> all{
+        {"Software", fmt::format("whit {}", version())},
+        {"whit:command", settings_.picture_command},
+        {"whit:scene", path_},
+        {"whit:samplesPerPixel", static_cast<int>(std::lround(result.samples_per_pixel))},
+        {"whit:seed", std::to_string(settings_.seed)}};  // Text, since an OpenEXR int ends at half of the seeds.
+    if (!result.complete && StopSignals::come()) all.push_back({"whit:incomplete", stopped_text(result)});
+    return all;
   }
 
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
@@ -308,6 +370,7 @@ class RenderJob {
   const Sources& sources_ = *file_.sources;
   const double parsed_memory_;  ///< Resident after parsing, in bytes.
   StepTimes times_;
+  std::unique_ptr<Checkpoint> checkpoint_;
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
   bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.
   std::vector<Diagnostic> passed_;  ///< Errors that --keep-going went past.

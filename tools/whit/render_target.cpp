@@ -11,6 +11,7 @@
 #include "core/session/overrides.h"
 #include "tools/whit/json.h"
 #include "tools/whit/quantities.h"
+#include "tools/whit/stop_signals.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/text_file.h"
 
@@ -103,11 +104,10 @@ TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world
   std::optional<Progress> progress;
   if (!settings.quiet) progress.emplace("rendering");
   request.progress = [&](const TargetState& state) {
-    if (!progress) return true;
     const std::string error =
         std::isfinite(state.claim.value) ? fmt::format(", error {}", percent_text(state.claim.value)) : "";
-    progress->update(state.share, "rendering" + error);
-    return true;
+    if (progress) progress->update(state.share, "rendering" + error);
+    return !StopSignals::come();
   };
   return render_to_target(world, std::move(options), request, settings.seed);
 }
