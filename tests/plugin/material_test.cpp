@@ -330,9 +330,34 @@ TEST(Mix, HasTheLobesOfBothWeighted) {
   const auto outer =
       make_mix(named, {test::text("namedmaterial1", "mirror"), test::text("namedmaterial2", "mix")}, diagnostics);
   const LobeSet nested = lobes_of(*outer, points.s);
-  EXPECT_EQ(nested.count, 4);
+  // The mirror is in it twice, and has half of all and its share of the other half: 0.5 + 0.5 (0.75, 0, 1).
+  ASSERT_EQ(nested.count, 3);
   EXPECT_EQ(nested.eta, nullptr) << "a mirror's index is 1";
-  EXPECT_EQ(nested.lobes[3].weight[0], RGB(0.375f, 0, 0.5f));
+  EXPECT_EQ(nested.lobes[0].weight[0], RGB(0.125f, 1, 0));
+  EXPECT_EQ(nested.lobes[2].weight[0], RGB(0.875f, 0.5f, 1));
+}
+
+TEST(Mix, MaterialsThatAreDoubledOverAndOverAreOne) {
+  // 2^60 times the same; and a chain that is as long as no stack is deep.
+  for (const bool doubled : {true, false}) {
+    ShadingPoints points(1);
+    std::map<std::string, std::shared_ptr<Material>> named;
+    named["0"] = make_plugin<Material>("material", "matte", {test::rgb("Kd", 1, 0.5, 0.25)}).plugin;
+    named["mirror"] = make_plugin<Material>("material", "mirror", {test::rgb("Kr", 1, 1, 1)}).plugin;
+    Diagnostics diagnostics;
+    const int times = doubled ? 60 : 3000;
+    for (int k = 1; k <= times; ++k) {
+      const std::string before = std::to_string(k - 1);
+      // With amounts of 1/2 all is exact. Of the chain's mirror each mix adds half of what is left.
+      named[std::to_string(k)] = make_mix(
+          named, {test::text("namedmaterial1", before), test::text("namedmaterial2", doubled ? before : "mirror")},
+          diagnostics);
+    }
+    EXPECT_TRUE(diagnostics.all().empty());
+    const LobeSet set = lobes_of(*named[std::to_string(times)], points.s);
+    ASSERT_EQ(set.count, doubled ? 1 : 2);
+    EXPECT_EQ(set.lobes[set.count - 1].weight[0], doubled ? RGB(1, 0.5f, 0.25f) : RGB(1.0f));
+  }
 }
 
 TEST(Mix, NamesMustBeThere) {
