@@ -7,6 +7,12 @@
 #include <limits>
 
 namespace whit {
+namespace {
+
+/// A film's scale may take pixels beyond what a float holds; infinity is no radiance.
+constexpr float kBrightest = std::numeric_limits<float>::max();
+
+}  // namespace
 
 FilterTable::FilterTable(const Filter& filter)
     : x_radius_(filter.x_width),
@@ -149,8 +155,10 @@ void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
         const double weight = film.weight(unit);
         for (int c = 0; c < 4; ++c) sum[c] += weight * s[c];
       });
-      for (int c = 0; c < 3; ++c)
-        out[c] = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
+      for (int c = 0; c < 3; ++c) {
+        const float value = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
+        out[c] = std::clamp(value, -kBrightest, kBrightest);
+      }
     }
   });
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "core/batch/zero_pages.h"
@@ -181,6 +182,11 @@ Picture constant_picture(const char* filter_name, double radius, const RGB& colo
   const TileGrid grid{{-1, -1}, 5, 4};
   resolve_film({grid, table, tiles, {}, -1}, scale, picture);
   return picture;
+}
+
+TEST(ResolveFilm, NoScaleMakesAPixelInfinite) {
+  for (const float value : constant_picture("box", 0.5, {1e5f, 0, 1e-5f}, 1e35f).rgb) EXPECT_TRUE(std::isfinite(value));
+  EXPECT_EQ(constant_picture("box", 0.5, RGB(1e5f), 1e35f).rgb[0], std::numeric_limits<float>::max());
 }
 
 TEST(ResolveFilm, AConstantPictureStaysConstantUnderEveryFilter) {
