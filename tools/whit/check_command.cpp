@@ -12,6 +12,7 @@
 #include "core/check/check.h"
 #include "core/check/findings.h"
 #include "core/check/names.h"
+#include "tools/whit/check_files.h"
 #include "tools/whit/check_fix.h"
 #include "tools/whit/check_output.h"
 #include "tools/whit/command_line.h"
@@ -25,7 +26,7 @@ namespace {
 struct CheckFlags {
   std::vector<std::string> scenes, allow, also;
   std::string format = "text";
-  bool json = false, fix = false, strict = false, list = false;
+  bool json = false, fix = false, strict = false, list = false, files = false;
   ModelFlags model;
 };
 
@@ -62,6 +63,7 @@ std::string flag_problem(const CheckFlags& flags) {
   for (const std::string& path : flags.scenes) {
     if (std::string problem = usage_problem(flags.model, path); !problem.empty()) return problem;
     if (flags.fix && path == "-") return "--fix needs a file";
+    if (flags.files && (flags.fix || flags.format == "sarif")) return "--files lists names, and nothing else is done";
   }
   return {};
 }
@@ -106,6 +108,7 @@ bool read_flags(const Arguments& args, CheckFlags& flags, int& code) {
         {.repeats = true, .offers = optional_findings}},
        {"--fix", &flags.fix, "Correct in the files what is beyond doubt: misspelt names"},
        {"--strict", &flags.strict, "Call everything an error, notes too"},
+       {"--files", &flags.files, "List the files that a scene would read and write instead; with --json as JSON"},
        {"--list", &flags.list, "List what can be found, and exit"}}};
   add_model_flags(command, flags.model);
   if (!parse_arguments(command, args, code)) return false;
@@ -186,6 +189,11 @@ int check_command(const Arguments& args) {
   int code = kDone;
   if (!read_flags(args, flags, code)) return code;
   if (flags.list) return list_findings();
+  if (flags.files) {
+    for (const std::string& path : flags.scenes)
+      code = std::max(code, list_files(path, read_options(flags.model), flags.format == "json"));
+    return code;
+  }
   Checking checking(flags);
   for (const std::string& path : flags.scenes) {
     if (flags.fix) checking.fix(path);

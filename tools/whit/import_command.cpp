@@ -7,6 +7,7 @@
 #include "core/session/import_model.h"
 #include "core/session/models.h"
 #include "tools/whit/model_flags.h"
+#include "tools/whit/sandbox.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -23,9 +24,12 @@ int import_command(const Arguments& args) {
        {"--force", &request.overwrite, "Replace files that are there already"},
        {"--quiet", &quiet, "Problems only"}}};
   add_model_flags(command, flags);
+  SandboxFlags sandbox;
+  add_sandbox_flags(command, sandbox);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
-  if (const std::string problem = usage_problem(flags); !problem.empty()) {
+  for (const std::string& problem : {usage_problem(flags), usage_problem(sandbox)}) {
+    if (problem.empty()) continue;
     say("whit import: " + problem);
     return kUsage;
   }
@@ -39,9 +43,15 @@ int import_command(const Arguments& args) {
     say(fmt::format("whit import: there is no folder \"{}\"", folder.string()));
     return kFileError;
   }
+  const SandboxRequest files{{folder_to_read(request.model)}, {request.scene}};
+  if (const std::string problem = enter_sandbox(sandbox, files); !problem.empty()) {
+    say("whit import: " + problem);
+    return kFileError;
+  }
   request.selection = selection_of(flags), request.allow_outside = flags.allow_outside;
   const ImportResult result = import_model(request);
   print_diagnostics(Sources(), result.said);
+  explain_sandbox(sandbox, exit_code(result.said));
   if (result.said.has_errors()) return exit_code(result.said);
   if (quiet) return kDone;
   for (const std::string& note : result.notes) say("whit: " + note);

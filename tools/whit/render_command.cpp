@@ -3,6 +3,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <iterator>
@@ -22,6 +23,22 @@ int write_stats(const RenderStats& stats, const std::string& path) {
   if (problem.empty()) return kDone;
   say("whit: " + problem);
   return kFileError;
+}
+
+/// What the flags name. A picture that no flag names is written to the current folder.
+SandboxRequest sandbox_request(const RenderSettings& s) {
+  SandboxRequest request;
+  for (const std::string& scene : s.scenes) request.read.push_back(folder_to_read(scene));
+  request.read.push_back(s.output.ocio);
+  if (const char* config = std::getenv("OCIO")) request.read.emplace_back(config);
+  request.write = {s.output.outfile.empty() ? "picture" : s.output.outfile,
+                   s.output.display == "none" ? "" : s.output.display,
+                   s.stats_file,
+                   s.target.json,
+                   s.checkpoint.kept_in(),
+                   s.log_dir.empty() ? "" : s.log_dir + "/whit.log"};
+  request.read.push_back(s.checkpoint.resume);
+  return request;
 }
 
 /// --cat and --toply.
@@ -53,6 +70,10 @@ int render_command(const Arguments& args) {
   RenderSettings settings;
   int code = kDone;
   if (!read_render_flags(args, settings, code)) return code;
+  if (const std::string problem = enter_sandbox(settings.sandbox, sandbox_request(settings)); !problem.empty()) {
+    say("whit: " + problem);
+    return kFileError;
+  }
   if (settings.cat || settings.toply) return print_normal_form(settings);
   std::unique_ptr<tbb::global_control> threads;
   if (settings.threads > 0) {
@@ -65,6 +86,7 @@ int render_command(const Arguments& args) {
     if (code = render_file(settings, scene, before, stats); code != kDone) break;
     before = {};
   }
+  explain_sandbox(settings.sandbox, code);
   return std::max(code, write_stats(stats, settings.stats_file));
 }
 

@@ -58,9 +58,9 @@ std::string take_stats_file(Arguments& args, std::string& file) {
 /// Flags that a picture does not depend on: where it goes, what is said of it, how many threads make it, whether it was
 /// stopped in between.
 const std::vector<std::string> kBesideWithValue{
-    "--outfile",     "-o",  "--display",    "--nthreads", "--json",  "--display-server", "--logdir",
-    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume"};
-const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose"};
+    "--outfile",     "-o",  "--display",    "--nthreads", "--json",   "--display-server", "--logdir",
+    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume", "--allow"};
+const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose", "--sandbox"};
 /// Of the others, those that samples do not depend on: how they become a picture, how many are added, and how long that
 /// may take.
 const std::vector<std::string> kAfterSamples{"scenes",     "--samples", "--time-limit",     "--view",  "--ocio",
@@ -242,6 +242,9 @@ std::string usage_problem(const RenderSettings& s) {
   for (const std::string& scene : s.scenes) {
     if (std::string problem = usage_problem(s.model, scene); !problem.empty()) return problem;
   }
+  if (s.sandbox.on && !s.display_server.empty())
+    return "--display-server is called over the network, which --sandbox forbids";
+  if (std::string problem = usage_problem(s.sandbox); !problem.empty()) return problem;
   return usage_problem(s.effects);
 }
 
@@ -293,6 +296,7 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   add_effect_flags(command, settings.effects);
   add_model_flags(command, settings.model);
   for (const Flag& flag : more_flags_of(settings)) command.flags.push_back(flag);
+  add_sandbox_flags(command, settings.sandbox);
   Arguments words = split_lists(args);
   std::string problem = take_stats_file(words, settings.stats_file);
   if (problem.empty() && !parse_arguments(command, words, code)) return false;

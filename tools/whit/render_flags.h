@@ -10,6 +10,7 @@
 #include "tools/whit/commands.h"
 #include "tools/whit/effect_flags.h"
 #include "tools/whit/model_flags.h"
+#include "tools/whit/sandbox.h"
 
 namespace whit {
 
@@ -40,6 +41,7 @@ struct RenderSettings {
   ModelFlags model;
   TargetFlags target;
   CheckpointFlags checkpoint;
+  SandboxFlags sandbox;
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;

@@ -19,6 +19,7 @@
 #include "tools/whit/command_line.h"
 #include "tools/whit/effect_flags.h"
 #include "tools/whit/model_flags.h"
+#include "tools/whit/sandbox.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/watch_terminal.h"
 
@@ -34,6 +35,7 @@ struct WatchFlags {
   bool open = false, terminal = false, quick = false;
   EffectFlags effects;
   ModelFlags model;
+  SandboxFlags sandbox;
 };
 
 bool read_flags(const Arguments& given, WatchFlags& flags, int& code) {
@@ -59,6 +61,7 @@ bool read_flags(const Arguments& given, WatchFlags& flags, int& code) {
        {"--texture-memory", &flags.texture_memory, "MiB for textures", {.least = 1, .most = 1e9}}}};
   add_effect_flags(command, flags.effects);
   add_model_flags(command, flags.model);
+  add_sandbox_flags(command, flags.sandbox);
   Arguments args;
   for (const std::string& arg : given) {
     const bool kind = arg.rfind("--terminal=", 0) == 0;
@@ -72,6 +75,9 @@ std::string problem_of(const WatchFlags& flags) {
   if (flags.scene == "-") return "standard input cannot be watched; name a file";
   if (std::string problem = usage_problem(flags.effects); !problem.empty()) return problem;
   if (std::string problem = usage_problem(flags.model); !problem.empty()) return problem;
+  if (flags.sandbox.on && flags.open)
+    return "--open starts a browser, which --sandbox forbids; open the address yourself";
+  if (std::string problem = usage_problem(flags.sandbox); !problem.empty()) return problem;
   return usage_problem(flags.model, flags.scene);
 }
 
@@ -172,6 +178,13 @@ int watch_command(const Arguments& args) {
   std::error_code failed;
   if (!std::filesystem::exists(flags.scene, failed)) {
     say(fmt::format("whit watch: cannot open {}: there is no such file", flags.scene));
+    return kFileError;
+  }
+  // What is seen is written to the scene's own file, when somebody asks for it.
+  const SandboxRequest files{
+      {folder_to_read(flags.scene), flags.reference, flags.ocio}, {flags.scene}, !flags.terminal};
+  if (const std::string problem = enter_sandbox(flags.sandbox, files); !problem.empty()) {
+    say("whit watch: " + problem);
     return kFileError;
   }
   const EndSignals signals;
