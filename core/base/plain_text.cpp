@@ -71,6 +71,11 @@ std::string quoted_name(std::string_view name) {
 std::string json_message(const std::string& what) {
   const size_t end = what.find("] ");
   std::string text = end == what.npos ? what : what.substr(end + 2);
+  // The place is enough: what stands there may be part of a file that is no JSON at all.
+  if (const size_t quoted = text.find("; last read: '"); quoted != text.npos) {
+    const size_t expected = text.rfind("; expected ");
+    text.erase(quoted, expected == text.npos || expected < quoted ? text.npos : expected - quoted);
+  }
   constexpr size_t kMost = 300;
   if (text.size() > kMost) text = text.substr(0, kMost) + "...";
   for (char& c : text)

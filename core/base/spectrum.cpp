@@ -1,17 +1,14 @@
 #include "core/base/spectrum.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
-#include <system_error>
+#include <optional>
 
 #include "core/base/cie_1931.h"
+#include "core/base/limits.h"
 
 namespace whit {
 
@@ -63,7 +60,7 @@ std::string read_numbers(const std::string& text, std::vector<double>& out) {
       double value = 0;
       const auto [read_to, code] = std::from_chars(at + (*at == '+'), stop, value);
       if (code != std::errc() || read_to != stop || !std::isfinite(value))
-        return "line " + std::to_string(line) + ": expected a number, found \"" + std::string(at, stop) + '"';
+        return "line " + std::to_string(line) + ": expected a number";
       out.push_back(value);
       at = stop;
     }
@@ -102,19 +99,10 @@ RGB rgb_from_blackbody(double kelvin, double scale) {
 
 SpdFile read_spd_file(const std::string& path) {
   SpdFile file;
-  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
-    file.error = "is a directory";
-    file.readable = false;
-    return file;
-  }
-  std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    file.error = std::strerror(errno);
-    file.readable = false;
-    return file;
-  }
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  file.error = read_numbers(text, file.pairs);
+  const std::optional<std::string> text = read_file(path, kSpectrumBytes, file.error);
+  file.readable = text.has_value();
+  if (!text) return file;
+  file.error = read_numbers(*text, file.pairs);
   if (!file.error.empty()) return file;
   if (file.pairs.empty()) file.error = "holds no numbers";
   if (file.pairs.size() % 2 != 0) file.error = "the last wavelength has no value";

@@ -30,7 +30,7 @@ double planck(double nm, double kelvin);
 /// The contents of an .spd file, or why there are none.
 struct SpdFile {
   std::vector<double> pairs;  ///< Wavelength in nm and value in turn.
-  std::string error;          ///< "" on success; else "line 3: expected a number, found \"x\"" or the system's words.
+  std::string error;          ///< "" on success; else "line 3: expected a number", or why it cannot be read.
   bool readable = true;       ///< False when the file could not be read at all.
 };
 

@@ -15,10 +15,10 @@
 #include <memory>
 #include <new>
 
+#include "core/base/mapped_file.h"
 #include "core/base/plain_text.h"
 #include "core/base/stopwatch.h"
 #include "core/image/atomic_file.h"
-#include "core/plugin/mapped_file.h"
 
 namespace whit {
 namespace {
@@ -205,6 +205,7 @@ std::string replace_with(const std::string& from, const std::string& to) {
   AtomicFile target(to);
   target.keep_permissions();
   target.write_at(source.bytes().data(), source.bytes().size(), 0);
+  if (const std::string changed = source.problem(); !changed.empty()) return fmt::format("\"{}\": {}", from, changed);
   return target.commit();
 }
 

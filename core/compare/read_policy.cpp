@@ -8,11 +8,12 @@
 #include <set>
 
 #include "core/base/diagnostics.h"
+#include "core/base/limits.h"
+#include "core/base/mapped_file.h"
 #include "core/base/plain_text.h"
 #include "core/color/to_linear.h"
 #include "core/compare/measures.h"
 #include "core/compare/policy.h"
-#include "core/plugin/mapped_file.h"
 
 namespace whit {
 namespace {
@@ -304,9 +305,12 @@ PolicyRule read_rule(const Json& rule, const std::string& place, Mistakes& mista
 void read_rules(const Json& json, Mistakes& mistakes, Policy& policy) {
   if (!json.is_object())
     return mistakes.add("", described(json) + " is not a policy", "a policy is an object: {\"rules\": [...]}");
+  // What has no rules may be anything, and is not quoted.
+  const bool is_policy = json.contains("rules");
   for (const auto& [name, value] : json.items()) {
     if (name == "rules" || (name == "comment" && value.is_string())) continue;
     const std::string meant = did_you_mean(name, {"rules", "comment"});
+    if (!is_policy && meant.empty()) continue;
     mistakes.add(step(name), name == "comment" ? "is not a text" : fmt::format("a policy has no {}", quoted(name)),
                  meant.empty() ? "it has \"rules\" and perhaps a \"comment\"" : meant);
   }
@@ -324,7 +328,10 @@ Result<Policy> read_policy(const std::string& path) {
   if (!file.error().empty()) return {{}, fmt::format("{}: cannot be read: {}", path, file.error())};
   Mistakes mistakes(path);
   Policy policy{path, {}};
+  if (file.bytes().size() > kPolicyBytes.most)
+    return {{}, fmt::format("{}: cannot be read: {}", path, more_bytes_than(kPolicyBytes))};
   const Json json = parse(file.bytes(), mistakes);
+  if (const std::string changed = file.problem(); !changed.empty()) return {{}, fmt::format("{}: {}", path, changed)};
   if (!mistakes.any()) read_rules(json, mistakes, policy);
   if (mistakes.any()) return {{}, mistakes.text()};
   return {std::move(policy), ""};

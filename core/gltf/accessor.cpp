@@ -92,8 +92,10 @@ uint32_t sparse_index(const Sparse& s, std::span<const uint8_t> indices, size_t 
 template <class Out>
 std::string decode_sparse(const Buffers& buffers, const Accessor& a, Out* out) {
   const Sparse& s = *a.sparse;
-  std::span<const uint8_t> indices, values;
-  if (std::string error = buffers.view(s.index_view, indices); !error.empty()) return error;
+  std::span<const uint8_t> in_file, values;
+  if (std::string error = buffers.view(s.index_view, in_file); !error.empty()) return error;
+  // Copied, so that what is checked is what is used, whoever writes to the file meanwhile.
+  const std::vector<uint8_t> indices(in_file.begin(), in_file.end());
   if (std::string error = buffers.view(s.value_view, values); !error.empty()) return error;
   if (std::string error = sparse_problem(a, s, indices); !error.empty()) return "/sparse/indices: " + error;
   const size_t width = static_cast<size_t>(a.numbers());

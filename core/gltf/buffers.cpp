@@ -4,6 +4,8 @@
 
 #include <array>
 
+#include "core/base/plain_text.h"
+
 namespace whit::gltf {
 
 size_t size_of(Component c) {
@@ -22,7 +24,15 @@ Bytes Buffers::plain_view(int view) const {
   const BufferView& v = views[static_cast<size_t>(view)];
   if (v.buffer < 0) return {};
   const Bytes& b = buffers[static_cast<size_t>(v.buffer)];
-  return {b.bytes.subspan(v.offset, v.length), b.owner};
+  return {b.bytes.subspan(v.offset, v.length), b.owner, b.file};
+}
+
+std::string Buffers::problem() const {
+  for (const Bytes& buffer : buffers) {
+    const std::string problem = buffer.file ? buffer.file->problem() : std::string();
+    if (!problem.empty()) return fmt::format("{}: {}", shown_text(buffer.file->path(), 300), problem);
+  }
+  return {};
 }
 
 std::string Buffers::view(int view, std::span<const uint8_t>& out) const {

@@ -20,6 +20,7 @@ namespace whit::gltf {
 struct Bytes {
   std::span<const uint8_t> bytes;
   std::shared_ptr<const void> owner;
+  std::shared_ptr<const MappedFile> file = nullptr;  ///< Where they lie in one.
 };
 
 enum class Component { Int8, Uint8, Int16, Uint16, Uint32, Float };
@@ -73,6 +74,10 @@ class Buffers {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<std::string> files;  ///< Of buffers outside of the model's own.
+
+  /// "", or what has happened to the files since they were opened: "model.bin: it changed while it was read". To be asked
+  /// when something was read of them.
+  std::string problem() const;
 
   /// Makes room for what is decompressed; when all views are there.
   void prepare() { decoded_ = std::make_unique<Decoded[]>(views.size()); }

@@ -50,7 +50,7 @@ class DataReader {
     lengths_[i] = *length;
     Bytes& bytes = out_.buffers[i];
     if (item.has("uri")) read_resource(item, bytes);
-    else if (i == 0 && document_.has_chunk) bytes = {document_.chunk, document_.file};
+    else if (i == 0 && document_.has_chunk) bytes = {document_.chunk, document_.file, document_.file};
     else if (!fallback_[i]) return item.error("has no \"uri\", and the file has no buffer inside of it");
     // Where there are none the reason has been said.
     if (bytes.owner && bytes.bytes.size() < *length) {
@@ -78,7 +78,7 @@ class DataReader {
       return;
     }
     const std::string_view bytes = file->bytes();
-    out = {{reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, file};
+    out = {{reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}, file, file};
   }
 
   /// The buffer, offset and length of a view or of a compressed one. False when it is not within the buffer.

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "core/base/limits.h"
 #include "core/base/plain_text.h"
 
 namespace whit::gltf {
@@ -110,6 +111,10 @@ bool read_document(const std::string& path, Problems& problems, Document& out) {
   if (bytes.empty()) return problems.error({}, "the file is empty"), false;
   std::string_view json = bytes;
   if (bytes.substr(0, 4) == "glTF" && !split_binary(bytes, problems, json, out)) return false;
+  if (json.size() > kGltfJsonBytes.most) {
+    problems.error({}, more_bytes_than(kGltfJsonBytes), "put its buffers and pictures into files of their own");
+    return false;
+  }
   return parse_json(json, problems, out.json);
 }
 

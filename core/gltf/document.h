@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
+#include "core/base/mapped_file.h"
 #include "core/gltf/check.h"
-#include "core/plugin/mapped_file.h"
 
 namespace whit::gltf {
 

@@ -20,23 +20,19 @@ std::string folder_of(const std::string& path) {
   return folder.string();
 }
 
-}  // namespace
-
-std::shared_ptr<const Model> load_model(const std::string& path, const std::string& shown, const LoadOptions& options,
-                                        SourcePos where, Diagnostics& diagnostics) {
-  Problems problems(shown, where, diagnostics);
-  Document document;
+/// Reads and checks it; null after errors. `files`: what it was read from, also then.
+std::shared_ptr<const Model> read_model(const std::string& path, const LoadOptions& options, Problems& problems,
+                                        Document& document, std::shared_ptr<Buffers>& files) {
   if (!read_document(path, problems, document)) return nullptr;
   const Item root(document.json, problems);
   if (!check_version(root)) return nullptr;
 
   auto model = std::make_shared<Model>();
-  model->path = shown;
+  model->path = problems.shown();
   model->folder = folder_of(path);
-  auto buffers = std::make_shared<Buffers>();
-  read_data(root, document, model->folder, options, *buffers);
-  read_images(root, options, *buffers, *model);
-  check_model(root, *buffers);
+  read_data(root, document, model->folder, options, *files);
+  read_images(root, options, *files, *model);
+  check_model(root, *files);
   if (problems.any()) return nullptr;
 
   std::string problem;
@@ -48,9 +44,33 @@ std::shared_ptr<const Model> load_model(const std::string& path, const std::stri
   convert_scenes(*typed, *model);
   convert_meshes(*typed, *model);
   convert_materials(*typed, *model);
-  model->files = buffers->files;
-  model->buffers = std::move(buffers);
+  model->files = files->files;
+  model->buffers = files;
   return model;
+}
+
+}  // namespace
+
+std::shared_ptr<const Model> load_model(const std::string& path, const std::string& shown, const LoadOptions& options,
+                                        SourcePos where, Diagnostics& diagnostics) {
+  Diagnostics found;
+  Document document;
+  auto buffers = std::make_shared<Buffers>();
+  std::shared_ptr<const Model> model;
+  {
+    Problems problems(shown, where, found);
+    model = read_model(path, options, problems, document, buffers);
+  }
+  const std::string own = document.file->error().empty() ? document.file->problem() : std::string();
+  const std::string changed = own.empty() ? buffers->problem() : own;
+  if (changed.empty()) {
+    diagnostics.append(found);
+    return model;
+  }
+  // Whatever was found in it says nothing.
+  Problems problems(shown, where, diagnostics);
+  problems.file_error({}, changed, "start again when it is complete");
+  return nullptr;
 }
 
 }  // namespace whit::gltf

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/base/mapped_picture.h"
 #include "core/base/plain_text.h"
 #include "core/gltf/model_parts.h"
 
@@ -66,7 +67,8 @@ void read_image(const Item& item, const LoadOptions& options, const Buffers& buf
     if (to.extension.empty()) to.extension = extension_of_type(resource->mime_type);
   }
   if (to.extension.empty()) to.extension = extension_of_bytes(bytes.bytes);
-  auto inside = std::make_shared<PictureBytes>();
+  std::shared_ptr<PictureBytes> inside = std::make_shared<PictureBytes>();
+  if (bytes.file) inside = std::make_shared<MappedPicture>(bytes.file);
   inside->name = model.at(item.place());
   inside->bytes = bytes.bytes;
   inside->owner = bytes.owner;

@@ -105,6 +105,7 @@ std::string read_primitive(const Model& model, const Primitive& primitive, const
   if (uv_needed[1]) then([&] { return read_uvs(source, attributes.uv[1], vertices, out.uvs1); });
   if (needs.colors) then([&] { return read_colors(source, attributes.color, vertices, out.colors); });
   then([&] { return pose_arrays(source, primitive, pose, arrays); });
+  if (const std::string changed = model.buffers->problem(); !changed.empty()) error = model.at(changed);
   if (!error.empty()) return out = {}, error;
 
   out.owned_positions = std::move(arrays.positions);

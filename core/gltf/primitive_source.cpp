@@ -36,7 +36,9 @@ std::string PrimitiveSource::open() {
   if (!error.empty()) return model_.at(error);
   draco_ = std::make_unique<DracoMesh>();
   const uint64_t most = primitive_.indices >= 0 ? element_count(model_, primitive_.indices) : uint64_t{1} << 25;
-  error = draco_->decode(bytes, most);
+  // A copy, which stays the same while it is decoded.
+  const std::vector<uint8_t> encoded(bytes.begin(), bytes.end());
+  error = draco_->decode(encoded, most);
   return error.empty() ? "" : at("/extensions/KHR_draco_mesh_compression: " + error);
 }
 

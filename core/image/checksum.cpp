@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <isa-l/crc64.h>
 
-#include "core/plugin/mapped_file.h"
+#include "core/base/mapped_file.h"
 
 namespace whit {
 

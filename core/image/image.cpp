@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <filesystem>
 #include <new>
 #include <stdexcept>
 
+#include "core/base/file_state.h"
+#include "core/base/limits.h"
 #include "core/image/decode.h"
 #include "core/image/oiio/module.h"
+#include "core/image/picture_change.h"
 #include "core/image/signature.h"
 
 namespace whit {
@@ -19,25 +19,24 @@ namespace {
 // Why a path cannot be a picture at all, or "": OpenImageIO's own texts for these name formats, not reasons.
 std::string file_problem(const PictureFile& picture) {
   if (picture.bytes) return picture.bytes->bytes.empty() ? "it has no bytes" : "";
-  const std::string& path = picture.path;
-  std::error_code ec;
-  const auto status = std::filesystem::status(path, ec);
-  if (!std::filesystem::exists(status)) return "no such file";
-  if (std::filesystem::is_directory(status)) return "it is a folder";
-  if (std::FILE* file = std::fopen(path.c_str(), "rb")) {
-    const bool empty = std::fgetc(file) == EOF;
-    std::fclose(file);
-    return empty ? "the file is empty" : "";
-  }
-  return std::strerror(errno);
+  const FileState state = file_state(picture.path);
+  if (!state.exists()) return "no such file";
+  const std::string problem = why_unreadable(picture.path);
+  return problem.empty() && state.size == 0 ? "the file is empty" : problem;
 }
 
 // What `take` makes of an open file, or an error that names it.
 template <class T, class Take>
 Result<T> from_file(const PictureFile& file, const Take& take) {
+  const FileState before = state_of(file);
+  Result<T> result;
   try {
-    return {take(*open_picture(file)), ""};
-  } catch (const std::exception& e) { return {{}, picture_error(file.path, e)}; }
+    result = {take(*open_picture(file)), ""};
+  } catch (const std::exception& e) { result.error = picture_error(file.path, e); }
+  // A file that is being written looks like one that is damaged.
+  if (const std::string change = change_of(file, before); !change.empty())
+    result = {{}, picture_error(file.path, std::runtime_error(change))};
+  return result;
 }
 
 Image read_all(PictureRows& rows) {

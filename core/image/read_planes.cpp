@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/base/limits.h"
 #include "core/image/decode.h"
+#include "core/image/picture_change.h"
 #include "core/image/planes.h"
 #include "core/image/read_exr.h"
 
@@ -41,10 +43,16 @@ PicturePlanes read_rows(const PictureFile& file) {
 }  // namespace
 
 Result<PicturePlanes> read_planes(const PictureFile& file) {
+  const FileState before = state_of(file);
+  Result<PicturePlanes> result;
   try {
-    if (!file.bytes && Imf::isOpenExrFile(file.path.c_str())) return {read_exr_planes(file.path), ""};
-    return {read_rows(file), ""};
-  } catch (const std::exception& e) { return {{}, picture_error(file.path, e)}; }
+    // A pipe would be waited for.
+    const bool on_disk = !file.bytes && why_unreadable(file.path).empty();
+    result.value = on_disk && Imf::isOpenExrFile(file.path.c_str()) ? read_exr_planes(file.path) : read_rows(file);
+  } catch (const std::exception& e) { result.error = picture_error(file.path, e); }
+  if (const std::string change = change_of(file, before); !change.empty())
+    result = {{}, picture_error(file.path, std::runtime_error(change))};
+  return result;
 }
 
 }  // namespace whit

@@ -56,7 +56,8 @@ Bytes beginning(const PictureFile& picture) {
     return bytes;
   }
   const std::string& path = picture.path;
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Without waiting for somebody to write to a pipe.
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) return bytes;
   if (read(file, bytes.data(), kLength) != static_cast<ssize_t>(kLength)) bytes = {};
   close(file);

@@ -5,15 +5,24 @@
 #include <algorithm>
 #include <ctime>
 #include <exception>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "core/image/decode.h"
+#include "core/image/picture_change.h"
 
 namespace whit {
 namespace {
 
 PictureFile picture_of(const TextureSpec& spec) {
   return spec.bytes ? PictureFile(spec.bytes) : PictureFile(spec.path);
+}
+
+/// Throws when a picture is no longer what its file was `before`: what was read then and what is read now do not belong
+/// together.
+void check_unchanged(const TextureSpec& spec, const FileState& before) {
+  if (const std::string change = change_of(picture_of(spec), before); !change.empty()) throw std::runtime_error(change);
 }
 
 /// Adds the time of the thread's processor to a sum of nanoseconds.
@@ -77,9 +86,9 @@ class TextureMemory::Workspace {
 
 TextureMemory::TextureMemory(size_t limit) : account_(std::make_shared<Account>()), limit_(limit) {}
 
-TextureSource& TextureMemory::add(const TextureSpec& spec, SourcePos where) {
+TextureSource& TextureMemory::add(const TextureSpec& spec, SourcePos where, const FileState& file) {
   const std::lock_guard lock(mutex_);
-  return *sources_.emplace_back(std::make_unique<TextureSource>(spec, where));
+  return *sources_.emplace_back(std::make_unique<TextureSource>(spec, where, file));
 }
 
 std::vector<TextureSource*> TextureMemory::all() const {
@@ -106,7 +115,10 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
     if (!source.outline_) open(source);
     if (level < source.outline_->first_level()) decode(source, level);
   } catch (const std::exception& e) {
-    source.error_ = picture_error(source.spec_.path, e);
+    // A file that is being written looks like one that is damaged.
+    const std::string changed = change_of(picture_of(source.spec_), source.file_);
+    source.error_ = changed.empty() ? picture_error(source.spec_.path, e)
+                                    : picture_error(source.spec_.path, std::runtime_error(changed));
     source.outline_ = source.pyramid_ = nullptr;
     source.in_memory_ = false;
     source.rows_ = nullptr;
@@ -119,6 +131,7 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
 void TextureMemory::open(TextureSource& source) {
   const TextureSpec& spec = source.spec_;
   source.rows_ = open_picture(picture_of(spec));
+  check_unchanged(spec, source.file_);
   const ImageInfo& info = source.rows_->info;
   const bool gamma = spec.gamma.value_or(default_gamma(spec.path, info));
   source.options_ = {.single = spec.kind == TextureKind::Float,
@@ -139,6 +152,7 @@ void TextureMemory::decode(TextureSource& source, int level) {
   try {
     map = std::make_unique<MipMap>(*rows, source.options_, first);
   } catch (const ExceedsHalves&) { source.options_.floats = true; }
+  check_unchanged(source.spec_, source.file_);
   if (!map) return workspace.become(0), decode(source, level);
   ++source.decodes_;
   decoded_bytes_ += static_cast<int64_t>(map->bytes());

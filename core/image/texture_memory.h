@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/file_state.h"
 #include "core/image/mipmap.h"
 #include "core/image/picture_rows.h"
 #include "core/image/scratch_file.h"
@@ -21,7 +22,8 @@ namespace whit {
 /// A file as some textures want it, those that differ only in their filter.
 class TextureSource {
  public:
-  TextureSource(TextureSpec spec, SourcePos where) : spec_(std::move(spec)), where_(where) {}
+  TextureSource(TextureSpec spec, SourcePos where, const FileState& file)
+      : spec_(std::move(spec)), where_(where), file_(file) {}
 
   /// n lookups, the finest of which needed that level.
   void note(int n, int level) {
@@ -36,6 +38,7 @@ class TextureSource {
 
   const TextureSpec spec_;
   const SourcePos where_;  // of the first that asked for it
+  const FileState file_;   // what the file has to stay, so that no picture shows two of its states
 
   std::mutex mutex_;  // held while decoding, so that it happens once; guards what follows, up to failed_
   std::unique_ptr<PictureRows> rows_;  // from a first look at the file until it is decoded
@@ -57,7 +60,8 @@ class TextureMemory {
  public:
   explicit TextureMemory(size_t limit);
 
-  TextureSource& add(const TextureSpec& spec, SourcePos where);
+  /// `file`: what it was when it was first named.
+  TextureSource& add(const TextureSpec& spec, SourcePos where, const FileState& file);
   void set_limit(size_t bytes) { limit_ = bytes; }
 
   /// Any level, also none at all: lookups tell which one they need.

@@ -7,9 +7,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/base/file_state.h"
 #include "core/base/vec.h"
 #include "core/image/texture_memory.h"
-#include "core/plugin/file_state.h"
 
 namespace whit {
 
@@ -134,8 +134,9 @@ const ImageTexture* TextureStore::add(const TextureSpec& spec, SourcePos where) 
                                        decoded.wrap, decoded.gamma,       decoded.scale, decoded.flip};
   const std::lock_guard lock(textures_->mutex);
   TextureSource*& source = textures_->sources[source_key];
-  if (!source) source = &memory_->add(decoded, where);
-  if (!spec.bytes) textures_->files.try_emplace(spec.path, file_state(spec.path));
+  FileState file;
+  if (!spec.bytes) file = textures_->files.try_emplace(spec.path, file_state(spec.path)).first->second;
+  if (!source) source = &memory_->add(decoded, where, file);
   auto& texture = textures_->textures[{source_key, spec.kind, spec.channel, spec.filter, spec.max_anisotropy}];
   if (!texture) texture.reset(new ImageTexture(*memory_, *source, spec));
   return texture.get();

@@ -92,7 +92,8 @@ class TextureStore {
   TextureStore& operator=(const TextureStore&) = delete;
 
   /// The texture of that spec, made on first request; reads nothing (check the file with probe_image).
-  /// `where` is the place of the file's name, for errors().
+  /// `where` is the place of the file's name, for errors(). From here on the file has to stay what it is until it is no
+  /// longer read: one that was written to or replaced is an error, since a picture would show both.
   const ImageTexture* add(const TextureSpec& spec, SourcePos where = {});
 
   /// The most bytes (kDefaultMemory unless set) that texels and what is being decoded may take. Before there would be

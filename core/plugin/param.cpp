@@ -1,16 +1,13 @@
 // How each member type is read from a parameter of a scene file. What is wrong is reported at the value's own place.
 #include "core/plugin/param.h"
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <system_error>
 #include <type_traits>
 
+#include "core/base/limits.h"
 #include "core/base/path_hint.h"
 #include "core/base/spectrum.h"
 
@@ -120,10 +117,7 @@ std::string resolve(const BindContext& ctx, const std::string& as_given) {
 }
 
 bool check_readable(const Parameter& p, const BindContext& ctx, const std::string& as_given, const std::string& path) {
-  std::string reason;
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) reason = "is a folder";
-  else if (errno = 0; !std::ifstream(path, std::ios::binary)) reason = std::strerror(errno);
+  const std::string reason = why_unreadable(path);
   if (reason.empty()) return true;
   const std::string hint = path_hint(as_given);
   ctx.diagnostics->file_error(ctx.at(p), "cannot open " + as_given,

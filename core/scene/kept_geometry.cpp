@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "core/plugin/file_state.h"
+#include "core/base/file_state.h"
 
 namespace whit {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/image/atomic_file.h"
 #include "core/image/checksum.h"
-#include "core/plugin/mapped_file.h"
+#include "core/base/mapped_file.h"
 #include "core/render/film_render.h"
 #include "core/session/files.h"
 

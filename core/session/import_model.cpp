@@ -11,6 +11,8 @@
 #include <span>
 #include <sstream>
 
+#include "core/base/mapped_file.h"
+#include "core/gltf/buffers.h"
 #include "core/gltf/statement_text.h"
 #include "core/image/atomic_file.h"
 #include "core/plugin/mesh_ply.h"
@@ -90,11 +92,14 @@ std::string read_bytes(const gltf::Model& model, NewFile& file) {
   } else if (file.image && file.image->inside) {
     const std::span<const uint8_t> inside = file.image->inside->bytes;
     file.bytes.assign(inside.begin(), inside.end());
+    const std::string changed = model.buffers->problem();
+    if (!changed.empty()) return model.at(changed);
   } else if (file.image) {
-    std::ifstream in(file.image->file, std::ios::binary);
+    const MappedFile picture(file.image->file);
+    file.bytes = picture.bytes();
     const std::ptrdiff_t number = file.image - model.images.data();
-    if (!in) return model.at(fmt::format("/images/{}/uri: cannot open \"{}\"", number, file.image->file));
-    file.bytes.assign(std::istreambuf_iterator<char>(in), {});
+    if (const std::string problem = picture.problem(); !problem.empty())
+      return model.at(fmt::format("/images/{}/uri: cannot read \"{}\": {}", number, file.image->file, problem));
   }
   return {};
 }

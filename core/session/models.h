@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/file_state.h"
 #include "core/gltf/describe.h"
-#include "core/plugin/file_state.h"
 #include "parser/models.h"
 
 namespace whit {

@@ -18,7 +18,7 @@
 #include <mutex>
 #include <set>
 
-#include "core/plugin/file_state.h"
+#include "core/base/file_state.h"
 #include "parser/include.h"
 #include "parser/lexer.h"
 

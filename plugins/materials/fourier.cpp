@@ -3,10 +3,9 @@
 // one or three channels.
 #include "core/lobe/fourier.h"
 
-#include <fstream>
-#include <iterator>
 #include <string>
 
+#include "core/base/limits.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 
@@ -24,11 +23,14 @@ struct Fourier : Material {
 
   bool read(Diagnostics& diagnostics, SourcePos) override {
     if (bsdffile.empty()) return true;  // reported by check()
-    std::ifstream file(bsdffile.path, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    const std::string problem = file.bad() || !file.is_open() ? "cannot be read" : parse_fourier_table(bytes, table);
-    if (problem.empty()) return true;
-    diagnostics.file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
+    std::string problem;
+    if (const auto bytes = read_file(bsdffile.path, kBsdfBytes, problem)) {
+      problem = parse_fourier_table(*bytes, table);
+      if (problem.empty()) return true;
+      diagnostics.file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
+    } else {
+      diagnostics.file_error(bsdffile.where, "cannot read \"" + bsdffile.as_given + "\": " + problem);
+    }
     return false;
   }
 

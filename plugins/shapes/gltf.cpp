@@ -33,7 +33,7 @@ struct GltfShape final : ModelShape {
       return false;
     }
     if (const std::string error = mesh->read(out); !error.empty()) {
-      ctx.diagnostics->error(ctx.statement, error);
+      ctx.diagnostics->file_error(ctx.statement, error);
       return false;
     }
     if (out.indices.empty() && out.degenerate > 0) {

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "core/base/mapped_file.h"
 #include "core/base/ply.h"
-#include "core/plugin/mapped_file.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
@@ -25,7 +25,8 @@ struct PlyMeshShape final : MeshShape {
       return false;
     }
     PlyMesh mesh;
-    if (const std::string error = parse_ply(file.bytes(), mesh, ctx.attributes); !error.empty()) {
+    const std::string wrong = parse_ply(file.bytes(), mesh, ctx.attributes), changed = file.problem();
+    if (const std::string& error = changed.empty() ? wrong : changed; !error.empty()) {
       ctx.diagnostics->file_error(filename.where, fmt::format("cannot read {}: {}", filename.as_given, error));
       return false;
     }

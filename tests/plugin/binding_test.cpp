@@ -188,7 +188,7 @@ TEST_F(Binding, ColourMistakes) {
   EXPECT_FALSE(bind(make<std::string>(ParamType::Spectrum, "colour", {"missing.spd"})));
   EXPECT_EQ(said().rfind("file error@20: cannot open missing.spd / ", 0), 0u) << said();
   fails(make<std::string>(ParamType::Spectrum, "colour", {write("bad.spd", "400 x")}),
-        "file error@20: cannot read bad.spd: line 1: expected a number, found \"x\"");
+        "file error@20: cannot read bad.spd: line 1: expected a number");
 }
 
 TEST_F(Binding, RangesAndFiniteness) {

@@ -18,10 +18,13 @@ struct FileState {
   int64_t nanoseconds_since_1970() const { return seconds * 1'000'000'000 + nanoseconds; }
 };
 
+inline FileState state_of(const struct stat& status) {
+  return {status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_dev, status.st_ino};
+}
+
 inline FileState file_state(const std::string& path) {
   struct stat status = {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return {status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_dev, status.st_ino};
+  return ::stat(path.c_str(), &status) == 0 ? state_of(status) : FileState{};
 }
 
 }  // namespace whit
