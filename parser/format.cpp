@@ -146,6 +146,7 @@ class Formatter {
         reporter_(reporter),
         folder_(std::move(folder)),
         options_(options),
+        inclusion_(sources, reporter, folder_),
         out_(out),
         writer_(out_) {}
 
@@ -157,11 +158,14 @@ class Formatter {
       append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
       put_comments_before(statement_);
       if (result == ReadResult::End) {
-        open_.pop_back();
+        pop();
+      } else if (result == ReadResult::Broken && !sources_.problem().empty()) {
+        break;
       } else if (result == ReadResult::Broken || reporter_.errors() != errors) {
         put_verbatim();
       } else {
         put_statement();
+        if (inclusion_.exhausted()) break;
       }
     }
     if (line_open_) out_.text("\n");
@@ -182,6 +186,12 @@ class Formatter {
     open_.emplace_back(sources_.text(file), file, std::move(trailing), reporter_);
     // The lexers hold the address of their file's comments, which moves with the stack.
     for (OpenFile& open : open_) open.lexer.collect_comments(&open.comments);
+    inclusion_.enter(file);
+  }
+
+  void pop() {
+    open_.pop_back();
+    inclusion_.leave();
   }
 
   std::string_view text() { return open_.back().lexer.text(); }
@@ -285,18 +295,15 @@ class Formatter {
   void expand_include() {
     put_comments_inside();
     open_.back().written_to = statement_.end;
-    const auto reading = [this](uint32_t file) {
-      return std::any_of(open_.begin(), open_.end(), [file](const OpenFile& open) { return open.file == file; });
-    };
-    const std::optional<uint32_t> file =
-        open_include(sources_, reporter_, folder_, statement_.names[0], statement_.names_at[0], reading);
-    if (file) push(*file, std::move(statement_.parameters));
+    if (const auto file = inclusion_.open(statement_.names[0], statement_.names_at[0]))
+      push(*file, std::move(statement_.parameters));
   }
 
   Sources& sources_;
   Reporter& reporter_;
   std::string folder_;
   const FormatOptions& options_;
+  Inclusion inclusion_;
   TextWriter out_;
   StatementWriter writer_;
   std::vector<OpenFile> open_;
@@ -315,18 +322,17 @@ Diagnostics format(Sources& sources, uint32_t file, std::string folder, std::ost
     Formatter(sources, reporter, std::move(folder), out, options).format(file);
   }
   reporter.finish();
+  check_unchanged(sources, diagnostics);
   return diagnostics;
 }
 
 }  // namespace
 
 Diagnostics format_file(Sources& sources, const std::string& path, std::ostream& out, const FormatOptions& options) {
-  std::string problem;
-  if (const std::optional<uint32_t> file = sources.open(path, problem))
-    return format(sources, *file, fs::path(path).parent_path().string(), out, options);
   Diagnostics diagnostics;
-  diagnostics.file_error({}, "cannot open " + quoted_path(path) + ": " + problem);
-  return diagnostics;
+  const std::optional<uint32_t> file = open_main(sources, path, diagnostics);
+  if (!file) return diagnostics;
+  return format(sources, *file, fs::path(path).parent_path().string(), out, options);
 }
 
 Diagnostics format_text(Sources& sources, std::string name, std::string text, std::string folder, std::ostream& out,

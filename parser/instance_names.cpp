@@ -1,8 +1,6 @@
 #include "parser/instance_names.h"
 
-#include <filesystem>
-#include <system_error>
-
+#include "core/base/limits.h"
 #include "parser/include.h"
 #include "parser/lexer.h"
 #include "parser/reporter.h"
@@ -77,12 +75,9 @@ class LookAhead {
 
   void enter(const std::string& path) {
     const std::string full = join_path(folder_, path);
-    std::error_code failed;
     std::string problem;
-    // What a pipe holds can be read only once, by the parser.
-    const bool regular = std::filesystem::is_regular_file(full, failed);
-    const std::optional<uint32_t> file = regular ? sources_.open(full, problem) : std::nullopt;
-    sure_ = file.has_value();
+    const std::optional<uint32_t> file = sources_.open(full, problem);
+    sure_ = file.has_value() && files_.size() < kIncludeDepth.most;
     // A second look at a file finds nothing new; so files that include one another come to an end, too.
     if (sure_ && entered_.insert(*file).second) push({*file, 0}, true);
   }

@@ -29,7 +29,11 @@ std::string absolute(const std::string& folder) {
 class FileReader {
  public:
   FileReader(Sources& sources, Reporter& reporter, std::string folder, const ParseOptions& options)
-      : sources_(sources), reporter_(reporter), folder_(std::move(folder)), options_(options) {}
+      : sources_(sources),
+        reporter_(reporter),
+        folder_(std::move(folder)),
+        options_(options),
+        inclusion_(sources, reporter, folder_) {}
 
   uint64_t read(uint32_t main_file, SceneBuilder& builder) {
     push(main_file);
@@ -38,7 +42,9 @@ class FileReader {
       const ReadResult result = read_statement(open_.back().lexer, statement_);
       append_trailing(open_.back().lexer, result, open_.back().trailing, statement_);
       release(open_.back());
-      if (result == ReadResult::End) open_.pop_back();
+      if (result == ReadResult::End) pop();
+      // What is lost of a file reads as zeros, any number of them.
+      if (result == ReadResult::Broken && !sources_.problem().empty()) break;
       if (result != ReadResult::Good) continue;
       if (!open_.back().for_shapes.empty()) add_for_shapes();
       builder.set_in_model(open_.back().is_model);
@@ -48,6 +54,7 @@ class FileReader {
       if (!include) continue;
       if (can_contribute(builder)) {
         this->include(*include);
+        if (inclusion_.exhausted()) break;
       } else if (check_include_exists(reporter_, folder_, include->path, include->where)) {
         builder.leave_unread(join_path(folder_, include->path), include->where);
       }
@@ -78,6 +85,12 @@ class FileReader {
     const std::string_view text = sources_.text(file);
     bytes_ += text.size();
     open_.push_back({file, Lexer(text, file, reporter_), std::move(trailing), {}, false});
+    inclusion_.enter(file);
+  }
+
+  void pop() {
+    open_.pop_back();
+    inclusion_.leave();
   }
 
   /// False when what is read now belongs to an object that the world does not place.
@@ -94,11 +107,7 @@ class FileReader {
   }
 
   void include(SceneBuilder::IncludeRequest& request) {
-    const auto is_open = [this](uint32_t file) {
-      return std::any_of(open_.begin(), open_.end(), [file](const OpenFile& open) { return open.file == file; });
-    };
-    if (const auto file = open_include(sources_, reporter_, folder_, request.path, request.where, is_open))
-      push(*file, std::move(request.parameters));
+    if (const auto file = inclusion_.open(request.path, request.where)) push(*file, std::move(request.parameters));
   }
 
   /// A Shape of a model's text gets the parameters that the statement had which placed the model.
@@ -132,6 +141,7 @@ class FileReader {
   Reporter& reporter_;
   std::string folder_;
   const ParseOptions& options_;
+  Inclusion inclusion_;
   std::vector<OpenFile> open_;
   Statement statement_;
   uint64_t bytes_ = 0;
@@ -175,6 +185,7 @@ ParseResult parse(Sources& sources, uint32_t file, const std::string& folder, co
   if (must_read_all(result, needs_unread))
     result = parse_once(sources, file, folder,
                         {.read_unplaced = true, .models = options.models, .is_model = options.is_model}, needs_unread);
+  if (!check_unchanged(sources, result.diagnostics)) result.scenes.clear();
   return result;
 }
 
@@ -182,12 +193,8 @@ ParseResult parse(Sources& sources, uint32_t file, const std::string& folder, co
 
 ParseResult parse_file(Sources& sources, const std::string& path, const ParseOptions& options) {
   ParseResult result;
-  std::string problem;
-  const std::optional<uint32_t> file = sources.open(path, problem);
-  if (!file) {
-    result.diagnostics.file_error({}, "cannot open " + quoted_path(path) + ": " + problem);
-    return result;
-  }
+  const std::optional<uint32_t> file = open_main(sources, path, result.diagnostics);
+  if (!file) return result;
   return parse(sources, *file, fs::path(path).parent_path().string(), options);
 }
 

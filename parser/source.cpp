@@ -1,7 +1,6 @@
 #include "parser/source.h"
 
 #include <fcntl.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +11,8 @@
 #include <sstream>
 
 #include "core/base/file_names.h"
+#include "core/base/limits.h"
+#include "core/base/mapped_file.h"
 
 namespace whit {
 
@@ -89,6 +90,7 @@ size_t columns(const std::vector<std::string>& cells) {
   return sum;
 }
 
+/// All that comes through a pipe, as far as the limit for that goes.
 std::string read_all(int descriptor, std::string& problem) {
   std::string text;
   for (;;) {
@@ -96,12 +98,12 @@ std::string read_all(int descriptor, std::string& problem) {
     const size_t old = text.size();
     text.resize(old + kChunk);
     const ssize_t got = ::read(descriptor, text.data() + old, kChunk);
+    const int error = errno;
     text.resize(old + static_cast<size_t>(std::max<ssize_t>(got, 0)));
     if (got == 0) return text;
-    if (got < 0 && errno != EINTR) {
-      problem = std::strerror(errno);
-      return {};
-    }
+    if (got < 0 && error != EINTR) problem = std::strerror(error);
+    if (text.size() > kPipedBytes.most) problem = more_bytes_than(kPipedBytes);
+    if (!problem.empty()) return {};
   }
 }
 
@@ -113,23 +115,19 @@ class Sources::File {
   File(std::string file_name, std::string text) : name(std::move(file_name)), owned_(std::move(text)) {
     text_ = owned_;
   }
-  File(std::string file_name, const char* mapped, size_t bytes) : name(std::move(file_name)), mapped_(true) {
-    text_ = {mapped, bytes};
-  }
-  ~File() {
-    if (mapped_) ::munmap(const_cast<char*>(text_.data()), text_.size());
-  }
+  File(std::string file_name, std::unique_ptr<const MappedFile> mapped)
+      : name(std::move(file_name)), mapped_(std::move(mapped)), text_(mapped_->bytes()) {}
   File(const File&) = delete;
   File& operator=(const File&) = delete;
 
   std::string_view text() const { return text_; }
 
   void release(uint64_t begin, uint64_t end) const {
-    if (!mapped_) return;
-    const auto page = static_cast<uint64_t>(::sysconf(_SC_PAGESIZE));
-    const uint64_t first = begin / page * page, last = std::min<uint64_t>(end, text_.size()) / page * page;
-    if (first < last) ::madvise(const_cast<char*>(text_.data()) + first, last - first, MADV_DONTNEED);
+    if (mapped_) mapped_->release(begin, end);
   }
+
+  /// "", or what has happened to the file since it was opened.
+  std::string problem() const { return mapped_ ? mapped_->problem() : std::string(); }
 
   /// How many newlines there are before `offset`.
   uint64_t lines_before(uint64_t offset) const {
@@ -143,33 +141,26 @@ class Sources::File {
     return counts_[block] + static_cast<uint64_t>(std::count(rest.begin(), rest.end(), '\n'));
   }
 
-  /// True when `status` is the file as it was when it was opened.
-  bool is(const struct stat& status) const {
-    return from_disk && status.st_dev == status_.st_dev && status.st_ino == status_.st_ino &&
-           status.st_size == status_.st_size && status.st_mtim.tv_sec == status_.st_mtim.tv_sec &&
-           status.st_mtim.tv_nsec == status_.st_mtim.tv_nsec;
-  }
-  void remember(const struct stat& status) {
-    status_ = status;
-    from_disk = true;
-  }
+  /// True when `now` is the file as it was when it was opened.
+  bool is(const FileState& now) const { return mapped_ && mapped_->state() == now; }
+
+  bool is_on_disk() const { return mapped_ != nullptr; }
 
   std::string name;
-  bool from_disk = false;
+  bool hidden = false;
 
  private:
   /// Small, because whole lists of places are asked for; a thousandth of the text in memory.
   static constexpr uint64_t kBlock = 1 << 13;
 
-  std::string owned_;
+  std::string owned_;  ///< Where no file is.
+  std::unique_ptr<const MappedFile> mapped_;
   std::string_view text_;
-  bool mapped_ = false;
-  struct stat status_ = {};
   mutable std::mutex mutex_;
   mutable std::vector<uint64_t> counts_{0};
 };
 
-Sources::Sources() = default;
+Sources::Sources() : copied_bytes_(MappedFile::kCopied) {}
 Sources::~Sources() = default;
 
 const Sources::File* Sources::find(uint32_t file) const { return file < files_.size() ? files_[file].get() : nullptr; }
@@ -185,40 +176,42 @@ std::optional<uint32_t> Sources::stand_in_for(const std::string& path) const {
   return found->second;
 }
 
-std::optional<uint32_t> Sources::open(const std::string& path, std::string& problem) {
+std::optional<uint32_t> Sources::open(const std::string& path, std::string& problem, Pipes pipes) {
   problem.clear();
   if (const auto edited = stand_in_for(path)) return edited;
+  struct stat status = {};
+  const bool there = ::stat(path.c_str(), &status) == 0;
+  if (there && S_ISFIFO(status.st_mode) && pipes == Pipes::Read) return read_pipe(path, problem);
+  const FileState now = there ? state_of(status) : FileState{};
+  const auto known = on_disk_.find({now.device, now.inode});
+  if (known != on_disk_.end() && files_[known->second]->is(now)) return known->second;
+  auto mapped = std::make_unique<const MappedFile>(path, copied_bytes_);
+  problem = mapped->error();
+  if (!problem.empty()) return std::nullopt;
+  const auto number = static_cast<uint32_t>(files_.size());
+  on_disk_[{mapped->state().device, mapped->state().inode}] = number;
+  files_.push_back(std::make_unique<File>(path, std::move(mapped)));
+  return number;
+}
+
+std::optional<uint32_t> Sources::read_pipe(const std::string& path, std::string& problem) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     problem = std::strerror(errno);
     return std::nullopt;
   }
-  struct stat status = {};
-  if (::fstat(descriptor, &status) != 0) problem = std::strerror(errno);
-  if (problem.empty() && S_ISDIR(status.st_mode)) problem = std::strerror(EISDIR);
-  const bool regular = S_ISREG(status.st_mode);
-  // A device such as /dev/zero has no end; a pipe has.
-  if (problem.empty() && !regular && !S_ISFIFO(status.st_mode)) problem = "Not a regular file";
-  for (uint32_t i = 0; problem.empty() && regular && i < files_.size(); ++i) {
-    if (!files_[i]->is(status)) continue;
-    ::close(descriptor);
-    return i;
-  }
-  std::unique_ptr<File> file;
-  if (problem.empty() && regular && status.st_size > 0 && !copies_) {
-    const auto bytes = static_cast<size_t>(status.st_size);
-    void* mapped = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
-    if (mapped != MAP_FAILED) {
-      ::madvise(mapped, bytes, MADV_SEQUENTIAL);
-      file = std::make_unique<File>(path, static_cast<const char*>(mapped), bytes);
-    }
-  }
-  if (problem.empty() && !file) file = std::make_unique<File>(path, read_all(descriptor, problem));
+  std::string text = read_all(descriptor, problem);
   ::close(descriptor);
   if (!problem.empty()) return std::nullopt;
-  if (regular) file->remember(status);
-  files_.push_back(std::move(file));
-  return static_cast<uint32_t>(files_.size() - 1);
+  return add_text(path, std::move(text));
+}
+
+std::string Sources::problem() const {
+  for (const auto& file : files_) {
+    const std::string problem = file->problem();
+    if (!problem.empty()) return printable(file->name) + ": " + problem;
+  }
+  return {};
 }
 
 uint32_t Sources::add_text(std::string name, std::string text) {
@@ -235,6 +228,15 @@ void Sources::release(uint32_t file, uint64_t begin, uint64_t end) const {
   if (const File* f = find(file)) f->release(begin, end);
 }
 
+void Sources::hide(uint32_t file) {
+  if (file < files_.size()) files_[file]->hidden = true;
+}
+
+bool Sources::is_on_disk(uint32_t file) const {
+  const File* f = find(file);
+  return f && f->is_on_disk();
+}
+
 const std::string& Sources::name(uint32_t file) const {
   static const std::string none;
   const File* f = find(file);
@@ -243,7 +245,7 @@ const std::string& Sources::name(uint32_t file) const {
 
 SourcePlace Sources::place(SourcePos where) const {
   const File* file = find(where.file);
-  if (!file) return {};
+  if (!file || !file->problem().empty()) return {};
   const std::string_view text = file->text();
   const uint64_t offset = std::min<uint64_t>(where.offset, text.size());
   const std::string_view before = text.substr(0, offset);
@@ -256,13 +258,16 @@ std::string Sources::location(SourcePos where) const {
   const File* file = find(where.file);
   if (!file) return {};
   const SourcePlace at = place(where);
+  if (at.line == 0) return printable(file->name) + " (changed since)";
   return printable(file->name) + ":" + std::to_string(at.line) + ":" + std::to_string(at.column);
 }
 
 std::string Sources::excerpt(SourcePos where, bool colour) const {
+  const File* file = find(where.file);
+  if (!file || file->hidden || !file->problem().empty()) return {};
   // Twice the columns shown, so that a line of four-byte code points still fills its half of the window.
   constexpr size_t kReach = 240, kColumns = 100, kHalf = kColumns / 2;
-  const std::string_view text = this->text(where.file);
+  const std::string_view text = file->text();
   const size_t offset = std::min<size_t>(where.offset, text.size());
   size_t start = offset;
   while (start > 0 && offset - start < kReach && text[start - 1] != '\n') --start;

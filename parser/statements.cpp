@@ -219,6 +219,15 @@ bool starts_statement(std::string_view word) {
   return is_directive(word) || looks_like_directive(word) || !find_ignoring_case(word).empty();
 }
 
+const std::vector<std::string>& known_directives() {
+  static const auto* const known = [] {
+    auto* names = new std::vector<std::string>;
+    for (const StatementRow& row : kStatements) names->emplace_back(row.name);
+    return names;
+  }();
+  return *known;
+}
+
 Remedy unknown_directive_remedy(std::string_view word) {
   const std::string foreign = foreign_characters(word);
   if (!foreign.empty()) return foreign;
@@ -226,11 +235,9 @@ Remedy unknown_directive_remedy(std::string_view word) {
   if (!other_case.empty())
     return {"directives are case sensitive: write " + std::string(other_case),
             {std::string(word), std::string(other_case)}};
-  std::vector<std::string> known;
-  for (const StatementRow& row : kStatements) known.emplace_back(row.name);
-  const std::string nearest = nearest_name(std::string(word), known);
+  const std::string nearest = nearest_name(std::string(word), known_directives());
   if (nearest.empty()) return {};
-  return {"did you mean " + nearest + "?", suggestion(std::string(word), known).slip};
+  return {"did you mean " + nearest + "?", suggestion(std::string(word), known_directives()).slip};
 }
 
 void report_unknown_directive(Reporter& reporter, SourcePos where, std::string_view word) {
@@ -353,6 +360,12 @@ const StatementRow* find_statement(std::string_view name) {
 }
 
 bool is_directive(std::string_view name) { return find_statement(name) != nullptr; }
+
+bool resembles_directive(std::string_view word) {
+  const auto is_it = [&](const ForeignDirective& foreign) { return foreign.name == word; };
+  return is_directive(word) || std::any_of(std::begin(kForeignDirectives), std::end(kForeignDirectives), is_it) ||
+         !find_ignoring_case(word).empty() || !nearest_name(std::string(word), known_directives()).empty();
+}
 
 ReadResult read_statement(Lexer& lexer, Statement& out) {
   out = Statement();

@@ -60,6 +60,9 @@ const StatementRow* find_statement(std::string_view name);
 /// True for the name of a directive.
 bool is_directive(std::string_view name);
 
+/// True also for one of another version of pbrt, in other case, or misspelt: what a scene may begin with.
+bool resembles_directive(std::string_view word);
+
 enum class ReadResult : uint8_t {
   Good,    ///< A statement.
   Broken,  ///< It had a mistake of syntax, was reported and passed over; `where` and `end` say where it was.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/base/limits.h"
 #include "tests/base/temp_folder.h"
 #include "tests/parser/parser_test_support.h"
 
@@ -132,12 +133,14 @@ TEST_F(UnplacedFiles, FilesThatIncludeOneAnotherAreLookedIntoOnce) {
   EXPECT_EQ(names("ObjectEnd Include \"0.pbrt\" Include \"0.pbrt\" WorldEnd").size(), 64u);
 }
 
-TEST_F(UnplacedFiles, ChainsOfIncludesMayBeLong) {
-  // Each file is open while the next is looked into.
-  constexpr int kFiles = 2000;
+TEST_F(UnplacedFiles, ChainsOfIncludesMayBeAsLongAsTheParserReadsThem) {
+  // Each file is open while the next is looked into. The main file counts too.
+  constexpr int kFiles = static_cast<int>(kIncludeDepth.most) - 1;
   for (int i = 0; i < kFiles; ++i)
     write(std::to_string(i), i + 1 == kFiles ? "ObjectInstance \"last\"" : "Include \"" + std::to_string(i + 1) + "\"");
   EXPECT_EQ(names("ObjectEnd Include \"0\" WorldEnd"), Names{"last"});
+  write("before", "Include \"0\"");
+  EXPECT_EQ(names("ObjectEnd Include \"before\" WorldEnd"), kDoubt);
 }
 
 TEST_F(UnplacedFiles, OpenFilesAreGoneThroughToTheirEnds) {
@@ -299,8 +302,8 @@ TEST_F(UnplacedFiles, CoordinateSystemsThatMayBeThere) {
 
 TEST_F(UnplacedFiles, AreReadWhenAskedFor) {
   write("o.pbrt", kGarbage);
-  expect_only(parse("ObjectBegin \"o\" Include \"o.pbrt\" ObjectEnd", true), Severity::Error, 1, 1,
-              "unknown directive");
+  expect_only(parse("ObjectBegin \"o\" Include \"o.pbrt\" ObjectEnd", true), Severity::Error, 2, 25,
+              "does not begin with a statement");
 }
 
 TEST_F(UnplacedFiles, AreNoneWhereAllIsPlaced) {

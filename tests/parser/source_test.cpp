@@ -84,7 +84,7 @@ TEST(Sources, EmptyFileMissingFileAndFolder) {
   EXPECT_EQ(problem, "Is a directory");
   // A device may have no end.
   EXPECT_FALSE(sources.open("/dev/zero", problem).has_value());
-  EXPECT_EQ(problem, "Not a regular file");
+  EXPECT_EQ(problem, "it is not a regular file");
 }
 
 TEST(RenderDiagnostic, PlaceLineCaretAndRemedy) {
