@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <unordered_set>
 #include <utility>
 
 #include "core/base/file_names.h"
+#include "core/base/limits.h"
 #include "parser/include.h"
 
 namespace whit::author {
@@ -107,6 +109,7 @@ std::string Workspace::resolve(const File& main, const std::string& name) {
 
 bool Workspace::walk_file(const File& main, File& file, const Visit& visit, std::vector<const File*>& reading) {
   static const StatementRow* const include = find_statement("Include");
+  if (reading.size() >= kIncludeDepth.most || ++walked_ > kIncludes.most) return true;
   reading.push_back(&file);
   for (size_t i = 0; i < file.index.items().size(); ++i) {
     if (!visit(file, i)) return false;
@@ -124,16 +127,18 @@ bool Workspace::walk_file(const File& main, File& file, const Visit& visit, std:
 
 void Workspace::walk(File& main, const Visit& visit) {
   std::vector<const File*> reading;
+  walked_ = 0;
   walk_file(main, main, visit, reading);
 }
 
 std::vector<File*> Workspace::files_of(File& main) {
   std::vector<File*> found{&main};
+  std::unordered_set<const File*> known{&main};
   for (size_t i = 0; i < found.size(); ++i) {
     for (const Mention& m : found[i]->index.mentions()) {
       if (m.kind != NameKind::Include) continue;
       File* included = find(resolve(main, m.name));
-      if (included && std::find(found.begin(), found.end(), included) == found.end()) found.push_back(included);
+      if (included && known.insert(included).second) found.push_back(included);
     }
   }
   return found;

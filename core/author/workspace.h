@@ -75,6 +75,7 @@ class Workspace {
   std::unordered_map<std::string, std::string> canonical_;
   std::unordered_map<std::string, std::string> main_of_;  ///< Found before.
   std::set<std::string> alone_;                           ///< Files for which none was found on the disk.
+  uint64_t walked_ = 0;                                   ///< Files so far, each as often as it is included.
   std::unordered_map<std::string, File*> looked_at_;      ///< On the disk; null where there is none.
 };
 
