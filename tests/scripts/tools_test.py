@@ -99,6 +99,17 @@ class InstallDeps(Temporary):
         self.assertTrue(install.endswith(" install --no-install-recommends cmake"), install)
 
     @unittest.skipUnless(os.geteuid() == 0, "needs root")
+    def test_node_of_another_maker_is_enough(self):
+        # As NodeSource's, with which Debian's npm conflicts: dpkg knows no package npm then, and perhaps no nodejs.
+        self.program("node", "")
+        self.program("npm", "")
+        self.program("dpkg-query", 'for p in "$@"; do [[ $p == -* || $p == nodejs || $p == npm ]] || printf "installed:%s " "$p"; done\n')
+        self.program("apt-get", "echo called; exit 1\n")
+        self.assertEqual(run(ROOT + "/tools/install-deps", "dev", path=self.programs), (0, ""))
+        # The list is that of a plain Debian.
+        self.assertIn("npm", run(ROOT + "/tools/install-deps", "--list", "dev", path=self.programs)[1].split())
+
+    @unittest.skipUnless(os.geteuid() == 0, "needs root")
     def test_apt_fails(self):
         self.program("dpkg-query", "exit 1\n")
         self.program("apt-get", '[[ $* != *update* ]] || { echo "cannot resolve the host"; exit 100; }\n')
