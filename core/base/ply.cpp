@@ -10,6 +10,8 @@
 #include <optional>
 #include <type_traits>
 
+#include "core/base/limits.h"
+
 namespace whit {
 namespace {
 
@@ -136,11 +138,14 @@ std::string parse_property(const Words& w, Header& header) {
 
 /// Parses the header and leaves `rest` at the first byte of the data.
 std::string parse_header(std::string_view& rest, Header& header) {
-  const auto magic = take_line(rest);
+  std::string_view head = rest.substr(0, kPlyHeaderBytes.most);
+  const bool all = head.size() == rest.size();
+  const auto magic = take_line(head);
   if (!magic || *magic != "ply") return "not a PLY file: it does not begin with \"ply\"";
   bool has_format = false;
   for (;;) {
-    const auto line = take_line(rest);
+    const auto line = take_line(head);
+    if (!line && !all) return "the header of the PLY file has no end: " + more_bytes_than(kPlyHeaderBytes);
     if (!line) return "PLY header ends early";
     const Words w(*line);
     std::string error;
@@ -152,6 +157,7 @@ std::string parse_header(std::string_view& rest, Header& header) {
     else error = "PLY header has an unknown line: " + in_quotes(*line);
     if (!error.empty()) return error;
   }
+  rest.remove_prefix(static_cast<size_t>(head.data() - rest.data()));
   return has_format ? "" : "PLY header has no \"format\" line";
 }
 
@@ -232,13 +238,17 @@ class AsciiReader {
   static size_t least_size(Type) { return 1; }
 
  private:
+  /// No number is as long; what is no text at all need not be read to its end.
+  static constexpr size_t kLongestWord = 4096;
+
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
   std::string_view next_word() {
     size_t begin = 0;
     while (begin < data_.size() && is_space(data_[begin])) ++begin;
     size_t end = begin;
-    while (end < data_.size() && !is_space(data_[end])) ++end;
+    while (end < data_.size() && end - begin < kLongestWord && !is_space(data_[end])) ++end;
     const std::string_view word = data_.substr(begin, end - begin);
+    if (word.size() == kLongestWord) failed_ = true, bad_ = word;
     data_.remove_prefix(end);
     return word;
   }

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace whit {
 namespace {
@@ -221,6 +222,42 @@ TEST(Ply, NormalsAndParametersAreFinitePointsAreAsTheFileSays) {
   EXPECT_EQ(mesh.normals, (std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}));
   EXPECT_EQ(mesh.uvs, (std::vector<float>{0, 0, 1, 0, 0, 1}));
   EXPECT_EQ(mesh.bad_numbers, 4u);
+}
+
+TEST(Ply, InBinaryToo) {
+  // The same by the ways that read packed values, of either size and order: x nx of each vertex are NaN and infinite.
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
+  const std::string normals =
+      "property double x\nproperty float y\nproperty float z\nproperty float nx\n"
+      "property double ny\nproperty float nz\n";
+  for (const Order order : {Order::Little, Order::Big}) {
+    std::string file = header(order == Order::Big ? "binary_big_endian" : "binary_little_endian", 3, normals, 0);
+    for (const double bad : {kNan, kInf, -kInf}) {
+      file += bytes(order, bad) + bytes(order, 1.0f) + bytes(order, 2.0f);
+      file += bytes(order, static_cast<float>(bad)) + bytes(order, bad) + bytes(order, 3.0f);
+    }
+    file.replace(file.find("face 0"), 6, "face 1");
+    file += bytes(order, uint8_t{3}) + bytes(order, 0) + bytes(order, 1) + bytes(order, 2);
+    PlyMesh mesh;
+    ASSERT_EQ(parse_ply(file, mesh), "");
+    EXPECT_EQ(mesh.bad_numbers, 6u);
+    EXPECT_EQ(mesh.normals, (std::vector<float>{0, 0, 3, 0, 0, 3, 0, 0, 3}));
+    EXPECT_TRUE(std::isnan(mesh.positions[0]));
+    EXPECT_EQ(mesh.positions[3], kInf);
+    EXPECT_EQ(mesh.positions[6], -kInf);
+  }
+}
+
+TEST(Ply, WhatHasNoEndIsNotReadToIt) {
+  // 16 MiB of zeros behind what looks like a beginning, which stand for the gigabytes of a sparse file:
+  // messages say that reading ended where it is known what they are.
+  const std::string zeros(size_t{1} << 24, '\0');
+  PlyMesh mesh;
+  EXPECT_EQ(parse_ply(zeros, mesh), "not a PLY file: it does not begin with \"ply\"");
+  EXPECT_EQ(parse_ply("ply\nformat ascii 1.0\ncomment " + zeros, mesh),
+            "the header of the PLY file has no end: it has more than 1048576 bytes, the limit ply-header-bytes");
+  const std::string error = parse_ply(header("ascii", 3, kXyz, 1) + zeros, mesh);
+  EXPECT_EQ(error.substr(0, 28), "PLY data has no number in \"" + std::string(1, '\0'));
 }
 
 TEST(Ply, TinyNumbersAreZeroNotErrors) {
