@@ -7,9 +7,12 @@
 #include <fstream>
 #include <map>
 #include <optional>
+#include <sstream>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "core/base/limits.h"
 
 namespace whit {
 namespace {
@@ -128,8 +131,13 @@ bool match(std::string_view glob, std::string_view path) {
 /// Lays what a .editorconfig file says of a path over `values`. Returns whether it is the root.
 bool read_config(const fs::path& config, const std::string& path, Values& values) {
   // Where somebody has something else of that name, not all of it is read.
-  constexpr size_t kMostLines = 10000, kLongest = 4096;
-  std::ifstream file(config);
+  constexpr size_t kMostLines = 10000, kLongest = 4096, kMostBytes = size_t{1} << 20;
+  if (!why_unreadable(config.string()).empty()) return false;
+  std::string head(kMostBytes, '\0');
+  std::ifstream in(config, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<size_t>(in.gcount()));
+  std::istringstream file(std::move(head));
   bool root = false, in_section = false, any_section = false;
   std::string line;
   for (size_t n = 0; n < kMostLines && std::getline(file, line); ++n) {

@@ -90,23 +90,6 @@ size_t columns(const std::vector<std::string>& cells) {
   return sum;
 }
 
-/// All that comes through a pipe, as far as the limit for that goes.
-std::string read_all(int descriptor, std::string& problem) {
-  std::string text;
-  for (;;) {
-    constexpr size_t kChunk = 1 << 16;
-    const size_t old = text.size();
-    text.resize(old + kChunk);
-    const ssize_t got = ::read(descriptor, text.data() + old, kChunk);
-    const int error = errno;
-    text.resize(old + static_cast<size_t>(std::max<ssize_t>(got, 0)));
-    if (got == 0) return text;
-    if (got < 0 && error != EINTR) problem = std::strerror(error);
-    if (text.size() > kPipedBytes.most) problem = more_bytes_than(kPipedBytes);
-    if (!problem.empty()) return {};
-  }
-}
-
 }  // namespace
 
 /// One file: its bytes, and the number of lines before each block of them, counted when first asked for.
@@ -181,7 +164,7 @@ std::optional<uint32_t> Sources::open(const std::string& path, std::string& prob
   if (const auto edited = stand_in_for(path)) return edited;
   struct stat status = {};
   const bool there = ::stat(path.c_str(), &status) == 0;
-  if (there && S_ISFIFO(status.st_mode) && pipes == Pipes::Read) return read_pipe(path, problem);
+  if (there && S_ISFIFO(status.st_mode) && pipes == Pipes::Read) return open_pipe(path, problem);
   const FileState now = there ? state_of(status) : FileState{};
   const auto known = on_disk_.find({now.device, now.inode});
   if (known != on_disk_.end() && files_[known->second]->is(now)) return known->second;
@@ -194,16 +177,16 @@ std::optional<uint32_t> Sources::open(const std::string& path, std::string& prob
   return number;
 }
 
-std::optional<uint32_t> Sources::read_pipe(const std::string& path, std::string& problem) {
+std::optional<uint32_t> Sources::open_pipe(const std::string& path, std::string& problem) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) {
     problem = std::strerror(errno);
     return std::nullopt;
   }
-  std::string text = read_all(descriptor, problem);
+  std::optional<std::string> text = read_pipe(descriptor, problem);
   ::close(descriptor);
-  if (!problem.empty()) return std::nullopt;
-  return add_text(path, std::move(text));
+  if (!text) return std::nullopt;
+  return add_text(path, std::move(*text));
 }
 
 std::string Sources::problem() const {
@@ -320,6 +303,23 @@ std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour
   std::istringstream remedy(diagnostic.remedy);
   for (std::string line; std::getline(remedy, line);) out.append("  ").append(printable(line)).append("\n");
   return out;
+}
+
+std::optional<std::string> read_pipe(int descriptor, std::string& problem) {
+  problem.clear();
+  std::string text;
+  for (;;) {
+    constexpr size_t kChunk = 1 << 16;
+    const size_t old = text.size();
+    text.resize(old + kChunk);
+    const ssize_t got = ::read(descriptor, text.data() + old, kChunk);
+    const int error = errno;
+    text.resize(old + static_cast<size_t>(std::max<ssize_t>(got, 0)));
+    if (got == 0) return text;
+    if (got < 0 && error != EINTR) problem = std::strerror(error);
+    if (text.size() > kPipedBytes.most) problem = more_bytes_than(kPipedBytes);
+    if (!problem.empty()) return std::nullopt;
+  }
 }
 
 std::string printable(std::string_view text) {

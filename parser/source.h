@@ -88,7 +88,7 @@ class Sources {
   std::string excerpt(SourcePos where, bool colour) const;
 
   std::optional<uint32_t> stand_in_for(const std::string& path) const;
-  std::optional<uint32_t> read_pipe(const std::string& path, std::string& problem);
+  std::optional<uint32_t> open_pipe(const std::string& path, std::string& problem);
 
   std::vector<std::unique_ptr<File>> files_;
   std::map<std::string, uint32_t> stand_ins_;  ///< By canonical path.
@@ -96,6 +96,9 @@ class Sources {
   std::map<std::pair<uint64_t, uint64_t>, uint32_t> on_disk_;
   size_t copied_bytes_;
 };
+
+/// All that comes through a pipe, up to the limit kPipedBytes; nothing, and `problem`, when there is more or reading fails.
+std::optional<std::string> read_pipe(int descriptor, std::string& problem);
 
 /// Text for a message: in double quotes, unprintable bytes escaped, cut after 60 characters.
 std::string in_quotes(std::string_view text);

@@ -14,6 +14,13 @@
 namespace whit {
 
 MappedFile::MappedFile(const std::string& path, size_t copied) : path_(path) {
+  // Looked at before it is opened: to open some devices is to do something to them.
+  struct stat status = {};
+  const bool odd = ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+  if (odd) {
+    error_ = kNotRegular;
+    return;
+  }
   const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (file < 0) {
     error_ = std::strerror(errno);

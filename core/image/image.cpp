@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "core/base/file_state.h"
 #include "core/base/limits.h"
@@ -25,18 +26,28 @@ std::string file_problem(const PictureFile& picture) {
   return problem.empty() && state.size == 0 ? "the file is empty" : problem;
 }
 
-// What `take` makes of an open file, or an error that names it.
+template <class T>
+Result<T> failed(const PictureFile& file, const std::exception& e) {
+  Result<T> result;
+  result.error = picture_error(file.path, e);
+  return result;
+}
+
+template <class T, class Take>
+Result<T> taken(const PictureFile& file, const Take& take) {
+  try {
+    return {take(*open_picture(file)), ""};
+  } catch (const std::exception& e) { return failed<T>(file, e); }
+}
+
+// What `take` makes of an open file, or an error that names it. A file that is being written looks like one that is
+// damaged, or like none of both.
 template <class T, class Take>
 Result<T> from_file(const PictureFile& file, const Take& take) {
   const FileState before = state_of(file);
-  Result<T> result;
-  try {
-    result = {take(*open_picture(file)), ""};
-  } catch (const std::exception& e) { result.error = picture_error(file.path, e); }
-  // A file that is being written looks like one that is damaged.
-  if (const std::string change = change_of(file, before); !change.empty())
-    result = {{}, picture_error(file.path, std::runtime_error(change))};
-  return result;
+  Result<T> result = taken<T>(file, take);
+  const std::string change = change_of(file, before);
+  return change.empty() ? std::move(result) : failed<T>(file, std::runtime_error(change));
 }
 
 Image read_all(PictureRows& rows) {

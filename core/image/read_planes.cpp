@@ -51,7 +51,7 @@ Result<PicturePlanes> read_planes(const PictureFile& file) {
     result.value = on_disk && Imf::isOpenExrFile(file.path.c_str()) ? read_exr_planes(file.path) : read_rows(file);
   } catch (const std::exception& e) { result.error = picture_error(file.path, e); }
   if (const std::string change = change_of(file, before); !change.empty())
-    result = {{}, picture_error(file.path, std::runtime_error(change))};
+    result.error = picture_error(file.path, std::runtime_error(change));
   return result;
 }
 

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "core/base/limits.h"
+
 namespace whit {
 namespace {
 
@@ -56,8 +58,8 @@ Bytes beginning(const PictureFile& picture) {
     return bytes;
   }
   const std::string& path = picture.path;
-  // Without waiting for somebody to write to a pipe.
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (!why_unreadable(path).empty()) return bytes;  // a pipe would be waited for
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) return bytes;
   if (read(file, bytes.data(), kLength) != static_cast<ssize_t>(kLength)) bytes = {};
   close(file);

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <thread>
 
+#include "core/base/mapped_picture.h"
 #include "core/image/mipmap.h"
 #include "core/image/write.h"
 #include "tests/base/temp_folder.h"
@@ -228,6 +230,67 @@ TEST(TextureStore, a_file_that_cannot_be_decoded_is_black_and_reported) {
   EXPECT_EQ(errors.all()[0].where.file, 3u);
   EXPECT_EQ(errors.all()[0].where.offset, 40u);
   EXPECT_EQ(store.statistics().decodes, 0);
+}
+
+// All that the store says, as lines.
+std::string said_by(const TextureStore& store) {
+  std::string said;
+  for (const Diagnostic& d : store.errors().all()) said += fmt::format("{}@{}\n", d.message, d.where.offset);
+  return said;
+}
+
+void make_old(const std::string& path) {
+  std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+}
+
+TEST(TextureStore, a_file_replaced_between_two_decodings_is_an_error) {
+  // By another of the same size, as one who paints saves it: first in place, then by renaming. What was decoded before
+  // gave values of 1; a picture of 1 and 2 would be of neither file.
+  for (const bool rename : {false, true}) {
+    const std::string path = constant_file("replaced", 32, 1);
+    make_old(path);
+    TextureStore store;
+    // One reading is by numbers, one by colours: of two textures of a file the second is decoded later.
+    const ImageTexture* colour = store.add(spec_of(path), {0, 7});
+    const ImageTexture* number = store.add(spec_of(path, TextureKind::Float), {0, 9});
+    EXPECT_EQ(look(colour), 1);
+    const std::string other = constant_file(rename ? "other" : "replaced", 32, 2);
+    if (rename) std::filesystem::rename(other, path);
+    EXPECT_FALSE(store.failed());
+    EXPECT_EQ(look(number), 0);
+    EXPECT_TRUE(store.failed());
+    EXPECT_EQ(said_by(store), fmt::format("cannot read image \"{}\": it changed while it was read@9\n", path));
+    EXPECT_EQ(store.errors().all()[0].error_class, ErrorClass::File);
+    // What is in memory needs no file.
+    EXPECT_EQ(look(colour), 1);
+  }
+}
+
+TEST(TextureStore, a_file_that_is_cut_off_meanwhile_is_not_called_damaged) {
+  const std::string path = constant_file("cut_off", 64, 1);
+  make_old(path);
+  TextureStore store;
+  const ImageTexture* texture = store.add(spec_of(path), {0, 7});
+  std::filesystem::resize_file(path, 100);
+  EXPECT_EQ(look(texture), 0);
+  EXPECT_EQ(said_by(store), fmt::format("cannot read image \"{}\": it changed while it was read@7\n", path));
+}
+
+TEST(TextureStore, so_is_a_picture_inside_of_a_model) {
+  const std::string path = constant_file("inside", 256, 1);
+  make_old(path);
+  const auto file = std::make_shared<const MappedFile>(path);
+  auto inside = std::make_shared<MappedPicture>(file);
+  inside->name = "model.glb: /images/0";
+  inside->bytes = {reinterpret_cast<const uint8_t*>(file->bytes().data()), file->bytes().size()};
+  inside->owner = file;
+  TextureSpec spec;
+  spec.bytes = inside;
+  TextureStore store;
+  const ImageTexture* texture = store.add(spec, {0, 7});
+  std::filesystem::resize_file(path, 100000);
+  EXPECT_EQ(look(texture), 0);
+  EXPECT_EQ(said_by(store), "cannot read image \"model.glb: /images/0\": it changed while it was read@7\n");
 }
 
 // The bytes of a file, as a model holds them.

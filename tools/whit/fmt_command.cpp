@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "parser/editor_config.h"
 #include "parser/format.h"
 #include "tools/whit/command_line.h"
+#include "tools/whit/load.h"
 #include "tools/whit/terminal.h"
 
 namespace whit {
@@ -43,13 +43,13 @@ Formatted format_one(const std::string& path, FormatOptions options) {
   Formatted out;
   options.written = &out.written;
   Sources sources;
-  sources.copy_files();  // What is replaced must not be mapped meanwhile.
+  sources.copy_files();  // Messages quote the text that there was before it is replaced.
   std::ostringstream text;
   Diagnostics d;
   EditorConfig config;
   if (path == "-") {
-    out.before = {std::istreambuf_iterator<char>(std::cin), {}};
-    d = format_text(sources, "<stdin>", out.before, "", text, options);
+    out.before = read_standard_input(d).value_or("");
+    if (!d.has_errors()) d = format_text(sources, "<stdin>", out.before, "", text, options);
   } else {
     config = read_editor_config(path);
     options.indent = config.indent;

@@ -6,10 +6,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
-#include <iterator>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include "parser/format.h"
+#include "tools/whit/load.h"
 #include "tools/whit/render_flags.h"
 #include "tools/whit/render_job.h"
 #include "tools/whit/terminal.h"
@@ -50,10 +52,11 @@ int print_normal_form(const RenderSettings& s) {
     options.expand_includes = true;
     options.to_ply = s.toply;
     if (path != "-") options.ply_folder = std::filesystem::path(path).parent_path().string();
-    const Diagnostics d =
-        path == "-" ? format_text(sources, "<stdin>", std::string{std::istreambuf_iterator<char>(std::cin), {}}, "",
-                                  std::cout, options)
-                    : format_file(sources, path, std::cout, options);
+    Diagnostics d;
+    std::optional<std::string> piped;
+    if (path != "-") d = format_file(sources, path, std::cout, options);
+    else if (piped = read_standard_input(d); piped)
+      d = format_text(sources, "<stdin>", std::move(*piped), "", std::cout, options);
     print_diagnostics(sources, d);
     code = std::max(code, exit_code(d));
   }
