@@ -197,6 +197,11 @@ std::string Sources::problem() const {
   return {};
 }
 
+std::string Sources::problem(uint32_t file) const {
+  const File* f = find(file);
+  return f ? f->problem() : std::string();
+}
+
 uint32_t Sources::add_text(std::string name, std::string text) {
   files_.push_back(std::make_unique<File>(std::move(name), std::move(text)));
   return static_cast<uint32_t>(files_.size() - 1);

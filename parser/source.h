@@ -41,6 +41,9 @@ class Sources {
   /// made of its text up to now may be of no use then. Of a file read into memory it is open() that says so.
   std::string problem() const;
 
+  /// The same of one file, without its name.
+  std::string problem(uint32_t file) const;
+
   /// From now on a file is this text, as an editor has it that has not saved: opening `path`, or another path to the
   /// same file, gives it. Nothing of it is read from the disk, where it need not be.
   void stand_in(const std::string& path, std::string text);

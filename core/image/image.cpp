@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include "core/base/file_state.h"
@@ -22,6 +24,7 @@ std::string file_problem(const PictureFile& picture) {
   if (picture.bytes) return picture.bytes->bytes.empty() ? "it has no bytes" : "";
   const FileState state = file_state(picture.path);
   if (!state.exists()) return "no such file";
+  if (std::error_code ignored; std::filesystem::is_directory(picture.path, ignored)) return "it is a folder";
   const std::string problem = why_unreadable(picture.path);
   return problem.empty() && state.size == 0 ? "the file is empty" : problem;
 }

@@ -247,7 +247,9 @@ std::string write_edit(const Sources& sources, const CameraEdit& edit) {
   if (!edit.problem.empty()) return edit.problem;
   const std::string& path = sources.name(edit.file);
   const std::string_view read = sources.text(edit.file);
-  if (!holds_text(path, read)) return fmt::format("{} is not any more what was read", path);
+  // The text of a large file is the file itself.
+  if (!sources.problem(edit.file).empty() || !holds_text(path, read))
+    return fmt::format("{} is not any more what was read", path);
   const std::string text = fmt::format("{}{}{}", read.substr(0, edit.begin), edit.text, read.substr(edit.end));
   const std::string problem = replace_file(path, text);
   return problem.empty() ? "" : fmt::format("{}: {}", path, problem);

@@ -45,10 +45,11 @@ struct Fourier : Material {
   }
 };
 
-const Register<Fourier> fourier{"fourier", "A tabulated BSDF from a file.",
-                                param(&Fourier::bsdffile, "bsdffile", Unit::None,
-                                      "The file, in layerlab's format: \"SCATFUN\", version 1. Required."),
-                                bumpmap_param()};
+const Register<Fourier> fourier{
+    "fourier", "A tabulated BSDF from a file.",
+    param(&Fourier::bsdffile, "bsdffile", Unit::None,
+          "The file, in layerlab's format: \"SCATFUN\", version 1, of up to 1 GiB. Required."),
+    bumpmap_param()};
 
 }  // namespace
 }  // namespace whit

@@ -67,7 +67,7 @@ std::vector<std::string> Fixer::fix(const std::function<ParsedFile(const Texts&)
       const std::string_view text = sources.text(number);
       auto mine = std::find_if(texts.begin(), texts.end(), [&](const auto& t) { return t.first == name; });
       // Models have texts that are in no file, and a file may have changed since.
-      if (mine == texts.end() && !holds_text(name, text)) continue;
+      if (mine == texts.end() && (!sources.problem(number).empty() || !holds_text(name, text))) continue;
       std::erase_if(edits, [&, n = number](const Edit& e) {
         const std::string written(text.substr(e.begin, e.end - e.begin));
         const uint64_t line = sources.place({n, e.begin}).line;
