@@ -13,8 +13,8 @@ uint64_t checksum(std::string_view bytes, uint64_t before) {
 
 std::optional<uint64_t> file_checksum(const std::string& path) {
   const MappedFile file(path);
-  if (!file.error().empty()) return {};
-  return checksum(file.bytes());
+  const uint64_t sum = checksum(file.bytes());
+  return file.problem().empty() ? std::optional(sum) : std::nullopt;
 }
 
 std::string checksum_text(uint64_t sum) { return fmt::format("{:016x}", sum); }

@@ -151,6 +151,8 @@ Checkpoint::Problem Checkpoint::resume(const std::string& path) {
   if (!problem.empty())
     return {Trouble::Different, fmt::format("cannot go on from \"{}\", which is of another render: {}", path, problem)};
   kept_ = state;
+  problem = file.problem();
+  if (!problem.empty()) return {Trouble::Unreadable, fmt::format("cannot go on from \"{}\": {}", path, problem)};
   return {};
 }
 
