@@ -1,40 +1,22 @@
 // libFuzzer entry: any bytes are loaded as a glTF model, and all accessors and primitives of what loads are decoded; nothing
 // may crash, and meshes must be what everybody relies on.
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <cmath>
-#include <cstdlib>
-#include <string>
 
 #include "core/gltf/accessor.h"
 #include "core/gltf/primitive.h"
+#include "tests/fuzz/shared/fuzz.h"
+#include "tests/fuzz/shared/json_mutator.h"
 
 namespace {
 
-/// A file in memory.
-class MemoryFile {
- public:
-  MemoryFile(const uint8_t* data, size_t size) : fd_(memfd_create("model", MFD_CLOEXEC)) {
-    if (fd_ < 0 || write(fd_, data, size) != static_cast<ssize_t>(size)) std::abort();
-  }
-  ~MemoryFile() { close(fd_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string path() const { return "/proc/self/fd/" + std::to_string(fd_); }
-
- private:
-  int fd_;
-};
+using whit::fuzz::require;
 
 void check(const whit::MeshData& mesh) {
   const size_t vertices = mesh.positions.size() / 3;
-  for (const uint32_t i : mesh.indices)
-    if (i >= vertices) std::abort();
+  for (const uint32_t i : mesh.indices) require(i < vertices);
   const auto right = [&](const std::vector<float>& values, size_t width) {
-    if (!values.empty() && values.size() != vertices * width) std::abort();
-    for (const float v : values)
-      if (!std::isfinite(v)) std::abort();
+    require(values.empty() || values.size() == vertices * width);
+    for (const float v : values) require(std::isfinite(v));
   };
   right(mesh.normals, 3), right(mesh.tangents, 3), right(mesh.bitangent_signs, 1);
   right(mesh.uvs, 2), right(mesh.uvs1, 2), right(mesh.colors, 4);
@@ -43,10 +25,11 @@ void check(const whit::MeshData& mesh) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  const MemoryFile file(data, size);
+  static whit::fuzz::MemoryFile file;
+  file.set(data, size);
   whit::Diagnostics diagnostics;
   const auto model = whit::gltf::load_model(file.path(), "fuzz.glb", {}, {}, diagnostics);
-  if ((model == nullptr) != diagnostics.has_errors()) std::abort();
+  require((model == nullptr) == diagnostics.has_errors());
   if (!model) return 0;
   whit::gltf::Pose pose;
   pose.weights = {0.5, 2, -1};
@@ -68,4 +51,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (const auto& animation : model->animations)
     for (const auto& channel : animation.channels) whit::gltf::read_floats(*model, channel.output, numbers);
   return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
+  return whit::fuzz::mutate_model(data, size, max_size, seed);
 }

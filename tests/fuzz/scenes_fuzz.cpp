@@ -1,0 +1,62 @@
+// libFuzzer entry: any text is a scene, which is parsed, planned, built and rendered, 4 x 4 pixels of one sample. Every
+// number of the picture must be one.
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/image/oiio/module.h"
+#include "core/session/models.h"
+#include "core/session/session.h"
+#include "tests/fuzz/shared/fuzz.h"
+#include "tests/fuzz/shared/scene_limits.h"
+#include "tests/fuzz/shared/scene_mutator.h"
+
+namespace {
+
+using whit::fuzz::require;
+
+/// Names in a scene are looked for in the folder of its files and nowhere else: no path leaves it without one of these.
+std::string without_paths(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '/' || c == '\\'; }, '_');
+  return text;
+}
+
+void render(whit::SceneDescription world, const whit::Sources& sources) {
+  whit::fuzz::limit(world);
+  const whit::BuiltWorld built = whit::build_world(whit::plan_world(world, sources),
+                                                   {.samples_per_pixel = 1, .keep_going = true}, size_t{64} << 20);
+  require(built.scene || built.said.has_errors());
+  if (!built.scene) return;
+  const whit::RenderedWorld rendered = whit::render_world(built, {.threads = 1});
+  for (const float v : rendered.result.picture.rgb) require(std::isfinite(v));
+}
+
+}  // namespace
+
+/// As in pictures_fuzz.cpp.
+extern "C" int LLVMFuzzerInitialize(int*, char***) {
+  whit::oiio();
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  static const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  whit::Sources sources;
+  whit::ModelStore models;
+  whit::ParseResult parsed = whit::parse_text(sources, "fuzz", without_paths(whit::fuzz::text_of(data, size)),
+                                              WHIT_SOURCE_DIR "/tests/fuzz/corpus/files", {.models = &models});
+  if (parsed.scenes.size() > 4) parsed.scenes.resize(4);
+  for (whit::SceneDescription& world : parsed.scenes) render(std::move(world), sources);
+  return 0;
+}
+
+extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
+  return whit::fuzz::mutate_scene(data, size, max_size, seed);
+}
+
+extern "C" size_t LLVMFuzzerCustomCrossOver(const uint8_t* a, size_t a_size, const uint8_t* b, size_t b_size,
+                                            uint8_t* out, size_t max_size, unsigned seed) {
+  return whit::fuzz::cross_scenes({a, a_size}, {b, b_size}, out, max_size, seed);
+}
