@@ -32,6 +32,8 @@ void clamp_numbers(Entity& entity, const char* name, double most) {
 
 void limit(SceneDescription& world) {
   constexpr int32_t kMost = 8;
+  // Where there is no statement the film is the default one, which has no parameters.
+  if (world.film.plugin.empty()) world.film.plugin = "image";
   set_integer(world.film, "xresolution", 4), set_integer(world.film, "yresolution", 4);
   // A tile's memory and time grow with the square of the filter's width.
   clamp_numbers(world.filter, "xwidth", kMost), clamp_numbers(world.filter, "ywidth", kMost);
