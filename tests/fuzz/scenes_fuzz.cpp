@@ -25,9 +25,11 @@ std::string without_paths(std::string text) {
 
 void render(whit::SceneDescription world, const whit::Sources& sources) {
   whit::fuzz::limit(world);
-  const whit::BuiltWorld built = whit::build_world(whit::plan_world(world, sources),
-                                                   {.samples_per_pixel = 1, .keep_going = true}, size_t{64} << 20);
-  require(built.scene || built.said.has_errors());
+  whit::PlannedWorld planned = whit::plan_world(world, sources);
+  const bool has_errors = planned.said.has_errors();
+  const whit::BuiltWorld built =
+      whit::build_world(std::move(planned), {.samples_per_pixel = 1, .keep_going = true}, size_t{64} << 20);
+  require(built.scene || has_errors || built.said.has_errors());
   if (!built.scene) return;
   const whit::RenderedWorld rendered = whit::render_world(built, {.threads = 1});
   for (const float v : rendered.result.picture.rgb) require(std::isfinite(v));
