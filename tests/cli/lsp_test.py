@@ -411,6 +411,8 @@ def test_manners(folder):
     uri = c.open(os.path.join(folder, "scene.pbrt"))
     assert c.fails("textDocument/hover", {"textDocument": {"uri": uri}, "position": {"line": -1, "character": 0}})["code"] == -32602
     assert c.fails("textDocument/hover", {"textDocument": {"uri": uri}, "position": {"line": "x"}})["code"] == -32602
+    for line in (1e30, 0.5, -1e300, [0]):  # of which the first fits no integer
+        assert c.fails("textDocument/hover", {"textDocument": {"uri": uri}, "position": {"line": line, "character": 0}})["code"] == -32602
     c.at("hover", uri, (10 ** 6, 10 ** 6))
     for garbage in (b"Content-Length: 5\r\n\r\n{{{{{", b"Content-Length: 2\r\n\r\n[]", b"Content-Length: nonsense\r\n\r\n",
                     b"Content-Length: 99999999999999999999\r\n\r\n", b"GET / HTTP/1.1\r\nHost: x\r\n\r\n",

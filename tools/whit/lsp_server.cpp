@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -53,6 +54,16 @@ const Value& member(const Value& object, std::initializer_list<const char*> path
   return *at;
 }
 
+/// A whole number, be it written as 3.0; throws a RequestError for any other, of which some fit no integer.
+int64_t whole_number(const Value& value) {
+  constexpr double kMost = 9007199254740992;  // 2^53: above it doubles skip whole numbers.
+  if (value.is_number_integer()) return value.get<int64_t>();
+  const double number = value.is_number_float() ? value.get<double>() : 0.5;
+  if (!(std::abs(number) <= kMost) || number != std::trunc(number))
+    throw RequestError{ErrorCode::InvalidParams, value.dump() + " stands where a whole number should"};
+  return static_cast<int64_t>(number);
+}
+
 bool says_yes(const Value& value) { return value.is_boolean() && value.get<bool>(); }
 
 bool lists(const Value& array, const char* word) {
@@ -94,7 +105,7 @@ Value range_json(Position begin, Position end) { return {{"start", to_json(begin
 
 Position position_of(const Value& json) {
   const auto number = [&](const char* name) {
-    const auto value = json.at(name).get<int64_t>();
+    const int64_t value = whole_number(json.at(name));
     if (value < 0) throw RequestError{ErrorCode::InvalidParams, "positions are counted from 0"};
     return static_cast<uint32_t>(std::min<int64_t>(value, 0xffffffff));
   };
@@ -201,7 +212,7 @@ void Server::did_open(const Value& params) {
   const Value& document = params.at("textDocument");
   const auto uri = document.at("uri").get<std::string>();
   File& file = workspace.open(path_of_uri(uri), uri, document.at("text").get<std::string>(),
-                              document.value("version", int64_t{0}));
+                              document.contains("version") ? whole_number(document["version"]) : 0);
   diagnose(file.path, true);
 }
 
