@@ -22,6 +22,9 @@ bool is_pbrt_integrator(const std::string& name) {
   return std::find(kPbrtIntegrators.begin(), kPbrtIntegrators.end(), name) != kPbrtIntegrators.end();
 }
 
+/// Whether the file has such a statement: one that names "" names a plugin that nobody has.
+bool is_given(const Entity& entity) { return !entity.plugin.empty() || entity.where.known(); }
+
 /// What to do with a statement whose plugin name is not known.
 struct Unknown {
   Severity severity = Severity::Warning;
@@ -214,7 +217,7 @@ class Binder {
   template <class T>
   Bound<T> bind_option(const Entity& entity, const std::string& category, const char* default_plugin,
                        const Unknown& unknown) {
-    if (!entity.plugin.empty() || entity.where.known()) return bind_entity<T>(entity, category, unknown);
+    if (is_given(entity)) return bind_entity<T>(entity, category, unknown);
     Entity implied;
     implied.plugin = default_plugin;
     return bind_entity<T>(implied, category, {Severity::Error, nullptr, ""});
@@ -267,7 +270,7 @@ class Binder {
   /// A sampler we do not have is replaced at the same number of samples.
   void bind_sampler() {
     const Entity& entity = description_.sampler;
-    if (entity.plugin.empty() || find_plugin("sampler", entity.plugin)) {
+    if (!is_given(entity) || find_plugin("sampler", entity.plugin)) {
       scene_.sampler = bind_option<Sampler>(entity, "sampler", kDefaultSampler, {});
       return;
     }
@@ -280,7 +283,7 @@ class Binder {
   /// An integrator that nobody has registered is rendered by the nearest there is, which is said once.
   void bind_integrator() {
     const Entity& entity = description_.integrator;
-    if (entity.plugin.empty() || find_plugin("integrator", entity.plugin)) {
+    if (!is_given(entity) || find_plugin("integrator", entity.plugin)) {
       scene_.integrator = bind_option<Integrator>(entity, "integrator", kDefaultIntegrator, {});
       return;
     }
@@ -407,14 +410,14 @@ class Binder {
 const PluginInfo& sampler_in_force(const SceneDescription& world) {
   const std::string& name = world.sampler.plugin;
   if (const PluginInfo* named = find_plugin("sampler", name)) return *named;
-  return *find_plugin("sampler", name.empty() ? kDefaultSampler : kStandInSampler);
+  return *find_plugin("sampler", is_given(world.sampler) ? kStandInSampler : kDefaultSampler);
 }
 
 const PluginInfo& integrator_in_force(const SceneDescription& world) {
   const std::string& name = world.integrator.plugin;
   if (const PluginInfo* named = find_plugin("integrator", name)) return *named;
   if (is_pbrt_integrator(name)) return *find_plugin("integrator", kNearestIntegrator);
-  return *find_plugin("integrator", name.empty() ? kDefaultIntegrator : kStandInIntegrator);
+  return *find_plugin("integrator", is_given(world.integrator) ? kStandInIntegrator : kDefaultIntegrator);
 }
 
 const AreaLight* BoundScene::emission_of(const ShapeDescription& shape) const {

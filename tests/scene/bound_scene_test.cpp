@@ -1,6 +1,7 @@
 // From statements to plugins: names that pbrt-v3 knows, and which of several values a material takes.
 #include "core/scene/bound_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "core/plugin/registry.h"
@@ -18,8 +19,8 @@ struct Loose {
   Diagnostics said;
   BoundScene bound;
 
-  explicit Loose(const std::string& world)
-      : parsed(parse_text(sources, "test.pbrt", "WorldBegin\n" + world + "\nWorldEnd\n", "")) {
+  explicit Loose(const std::string& world, const std::string& options = "")
+      : parsed(parse_text(sources, "test.pbrt", options + "WorldBegin\n" + world + "\nWorldEnd\n", "")) {
     bound = bind_scene(
         parsed.scenes[0], [this](const Parameter& p, size_t i) { return value_position(sources, p, i); }, said);
   }
@@ -44,6 +45,19 @@ const std::string kBlue = "Texture \"blue\" \"spectrum\" \"constant\" \"rgb valu
 TEST(BoundScene, NamesThatPbrtKnows) {
   EXPECT_EQ(find_plugin("area light", "area"), find_plugin("area light", "diffuse"));
   EXPECT_EQ(find_plugin("light", "exinfinite"), find_plugin("light", "infinite"));
+}
+
+TEST(BoundScene, NoNameIsAsUnknownAsAnyOther) {
+  // Such a statement once counted as none, and the default plugin was then looked for by the name that it has not.
+  for (const std::string name : {"", "nobody"}) {
+    const std::string named = " \"" + name + "\"\n";
+    const Loose scene("Shape \"sphere\"", "Sampler" + named + "Integrator" + named + "PixelFilter" + named);
+    EXPECT_TRUE(scene.bound.sampler.plugin && scene.bound.sampler.replaced);
+    EXPECT_TRUE(scene.bound.integrator.plugin && scene.bound.integrator.replaced);
+    EXPECT_TRUE(scene.bound.filter.plugin);
+    EXPECT_EQ(scene.said.all().size(), 3u);
+    EXPECT_FALSE(scene.said.has_errors());
+  }
 }
 
 TEST(BoundScene, AShapesParametersGoBeforeItsMaterials) {
