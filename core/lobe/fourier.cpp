@@ -298,7 +298,7 @@ std::string parse_fourier_table(std::string_view bytes, FourierTable& table) {
   in.take_all(offsets.data(), 2 * pairs), in.take_all(table.a.data(), table.a.size());
   table.first.resize(pairs), table.order.resize(pairs);
   for (size_t k = 0; k < pairs; ++k) table.first[k] = offsets[2 * k], table.order[k] = offsets[2 * k + 1];
-  const std::string problem = check_table(table);
+  std::string problem = check_table(table);
   if (problem.empty()) prepare_sampling(table);
   return problem;
 }

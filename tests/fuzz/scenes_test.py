@@ -32,7 +32,7 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 WHIT = os.environ.get("WHIT", os.path.join(ROOT, "build", "release", "whit"))
 FOLDERS = ("scenes", "scenes/analytic", "tests/conformance/scenes", "tests/field")
 SECONDS = 10  # of CPU: a hang
-WAIT = 120  # seconds by the clock: a hang that does nothing, on however busy a machine
+WAIT = 600  # seconds by the clock: a hang that does nothing, on however busy a machine
 SIZE = 32  # of a side, of which --quick renders a quarter
 
 TOKEN = re.compile(rb'"[^"\n]*"|#[^\n]*|[\[\]]|[^\s"\[\]#]+|\s+|.', re.S)
