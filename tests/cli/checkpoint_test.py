@@ -120,6 +120,10 @@ class Checkpoints(unittest.TestCase):
         self.run_whit("--spp", "256", "--footprint-spp", "64", "-o", "whole.exr", "--type", "float")
         self.assertEqual(*(subprocess.run([WHIT, "diff", "more.exr", "whole.exr", "--json"], cwd=self.folder.name,
                                           capture_output=True, text=True, check=False).returncode for _ in "1"), 0)
+        # Of a sampler whose samples are one set there are no more.
+        self.run_whit("--sampler", "halton", "--checkpoint", "set", "--quiet")
+        self.assertIn("cannot go on beyond their number",
+                      self.run_whit("--sampler", "halton", "--resume", "set", "--samples", "+64", code=2))
         # Resuming what is whole writes the picture again, without another sample.
         said = self.run_whit("--resume", "state", "-o", "again.exr", "--type", "float")
         self.assertIn("256 samples per pixel", said)

@@ -206,7 +206,7 @@ class RenderJob {
     DisplayServer viewer;
     const Stopwatch connecting;
     RenderOptions options = render_options(built, output.aovs, viewer);
-    if (int code = keep_state(options); code != kDone) return code;
+    if (int code = keep_state(*built.scene, options); code != kDone) return code;
     times_.output += connecting.elapsed();
     times_.ready = times_.program + times_.flags + world_started_.elapsed();
     if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
@@ -216,9 +216,13 @@ class RenderJob {
   }
 
   /// Where the flags ask for it, the options' film is kept in a file, and is what was kept before.
-  int keep_state(RenderOptions& options) {
+  int keep_state(const Scene& scene, RenderOptions& options) {
     const CheckpointFlags& flags = settings_.checkpoint;
     if (!flags.any()) return kDone;
+    if (flags.more_samples() > 0 && !scene.sampler().extends()) {
+      say("whit: --samples: those of this scene's sampler cannot go on beyond their number, those of sobol and random can");
+      return kUsage;
+    }
     RenderIdentity identity = identity_of(path_, file_);
     for (const auto& [flag, value] : settings_.of_samples) identity.add(flag, value);
     checkpoint_ = std::make_unique<Checkpoint>(flags.kept_in(), Checkpoint::Seconds(duration_of(flags.every)),
