@@ -166,6 +166,7 @@ std::string mutate_header(std::string_view header, Dice& dice) {
     lines.emplace_back(header.substr(at, end - at));
     at = end + 1;
   }
+  if (lines.empty()) return "ply\n";
   const size_t i = dice.below(lines.size()), j = dice.below(lines.size());
   switch (dice.below(8)) {
     case 0: lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(i)); break;
@@ -191,7 +192,8 @@ size_t mutate_ply(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
   if (dice.one_in(2)) return put_text(mutate_header(text.substr(0, end), dice) + text.substr(end), data, max_size);
   if (text.find("\nformat ascii") < end && dice.one_in(2))
     return body + exchange_number(data + body, size - body, max_size - body, dice);
-  return body + LLVMFuzzerMutate(data + body, size - body, dice.one_in(2) ? size - body : max_size - body);
+  const size_t room = size > body && dice.one_in(2) ? size - body : max_size - body;
+  return room == 0 ? size : body + LLVMFuzzerMutate(data + body, size - body, room);
 }
 
 }  // namespace whit::fuzz
