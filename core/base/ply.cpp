@@ -554,9 +554,10 @@ class MeshReader {
 /// The element of that name; null when there is none, or more than one.
 const Element* only_element(const Header& header, const char* name) {
   const Element* found = nullptr;
+  size_t count = 0;
   for (const Element& e : header.elements)
-    if (e.name == name) found = found ? nullptr : &e;
-  return found;
+    if (e.name == name) found = &e, ++count;
+  return count == 1 ? found : nullptr;
 }
 
 /// True for a mesh without faces or vertices, as programs write it that export whatever is there, and for point clouds.

@@ -181,6 +181,11 @@ TEST(Ply, BadContentsAreErrors) {
   says(header("ascii", 3, kXyz, 1, "property int i\nend_header\n") + three + "1", "lack \"vertex_indices\"");
   says(header("ascii", 3, kXyz, 1, "property list uchar float vertex_indices\nend_header\n") + three + "3 0 1 2",
        "integers");
+  // Of which the last once counted as the only one, as did every odd one, and the first two were read by its columns.
+  says(header("ascii", 3, kXyz, 1,
+              "property int i\nelement face 1\nproperty int i\nelement face 1\n" + std::string(kFaces)) +
+           three + "1 1 3 0 1 2",
+       "several elements \"face\"");
   says(header("utf8", 3, kXyz, 1) + three + "3 0 1 2", "format is unknown");
   says("ply\nformat ascii 1.0\nelement vertex x\n", "count is no number");
   says("ply\nformat ascii 1.0\nproperty float x\n", "before the first element");
