@@ -313,17 +313,15 @@ std::string Sources::render_diagnostic(const Diagnostic& diagnostic, bool colour
 std::optional<std::string> read_pipe(int descriptor, std::string& problem) {
   problem.clear();
   std::string text;
+  std::vector<char> chunk(size_t{1} << 16);
   for (;;) {
-    constexpr size_t kChunk = 1 << 16;
-    const size_t old = text.size();
-    text.resize(old + kChunk);
-    const ssize_t got = ::read(descriptor, text.data() + old, kChunk);
-    const int error = errno;
-    text.resize(old + static_cast<size_t>(std::max<ssize_t>(got, 0)));
+    const ssize_t got = ::read(descriptor, chunk.data(), chunk.size());
     if (got == 0) return text;
-    if (got < 0 && error != EINTR) problem = std::strerror(error);
-    if (text.size() > kPipedBytes.most) problem = more_bytes_than(kPipedBytes);
+    if (got < 0 && errno != EINTR) problem = std::strerror(errno);
+    const auto bytes = static_cast<size_t>(std::max<ssize_t>(got, 0));
+    if (text.size() + bytes > kPipedBytes.most) problem = more_bytes_than(kPipedBytes);
     if (!problem.empty()) return std::nullopt;
+    text.append(chunk.data(), bytes);
   }
 }
 

@@ -19,7 +19,7 @@ std::string lower_case(std::string text);
 std::string quoted_name(std::string_view name);
 
 /// A JSON parser's message without the prefix that names its class, at most 300 characters long, those beyond ASCII "?":
-/// "parse error at line 3, column 7: ...".
+/// "parse error at line 3, column 7: ...". Without the text that stands there, which may be that of any file.
 std::string json_message(const std::string& what);
 
 }  // namespace whit

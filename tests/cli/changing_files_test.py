@@ -15,7 +15,7 @@ import unittest
 import zlib
 
 WHIT = os.environ.get("WHIT")
-TRIES = 20
+TRIES = 5 if os.environ.get("WHIT_SANITIZE") else 20
 HEAD = """Camera "perspective" "float fov" 60
 Film "image" "integer xresolution" 8 "integer yresolution" 8
 Sampler "halton" "integer pixelsamples" 1
@@ -25,11 +25,11 @@ LightSource "point" "rgb I" [20 20 20]
 Translate 0 0 5
 """
 CHANGED = "changed while it was read"
-VERTICES = 300000
+VERTICES = 100000
 
 
 def ply():
-    """A strip of triangles of about 9 MB: long enough in reading for something to happen meanwhile."""
+    """A strip of triangles of about 3 MB: long enough in reading for something to happen meanwhile."""
     faces = VERTICES - 2
     head = ("ply\nformat binary_little_endian 1.0\nelement vertex %d\nproperty float x\nproperty float y\nproperty float z\n"
             "element face %d\nproperty list uchar int vertex_indices\nend_header\n" % (VERTICES, faces))
@@ -39,7 +39,7 @@ def ply():
 
 def scene_text():
     """The same size of statements."""
-    return (HEAD + 'Shape "sphere" "float radius" [ 0.5 ]\n' * 100000 + "WorldEnd\n").encode()
+    return (HEAD + 'Shape "sphere" "float radius" [ 0.5 ]\n' * 40000 + "WorldEnd\n").encode()
 
 
 def gltf():
@@ -140,7 +140,7 @@ class ChangingFiles(unittest.TestCase):
         began = time.monotonic()
         self.run_whit(*args).communicate(timeout=120)
         usual = time.monotonic() - began
-        for _ in range(TRIES):
+        for _ in range(TRIES if change in (shorten, repaint) else TRIES // 2):
             self.restore(name, content)
             if os.path.exists(self.path("picture.exr")):
                 os.remove(self.path("picture.exr"))
@@ -154,7 +154,7 @@ class ChangingFiles(unittest.TestCase):
             self.assertIn(run.returncode, codes, "%s of %s after %.3f s, %.3f: %s"
                           % (change.__name__, name, moment, share, said[-2000:]))
             if CHANGED in said:
-                self.assertEqual(run.returncode, 4, said)
+                self.assertEqual(run.returncode, 1 if args[0] == "check" else 4, said)
                 self.assertRegex(said, re.escape(name) + ".*" + CHANGED)
             if picture:
                 self.assertEqual(os.path.exists(self.path("picture.exr")), run.returncode == 0, said[-2000:])
@@ -199,7 +199,9 @@ class ChangingFiles(unittest.TestCase):
         whole = []
         for content in (noise(0), noise("new")):
             self.restore("0.png", content)
-            self.assertEqual(self.run_whit(*args).wait(timeout=120), 0)
+            run = self.run_whit(*args)
+            run.communicate(timeout=120)
+            self.assertEqual(run.returncode, 0)
             with open(self.path("picture.exr"), "rb") as f:
                 whole.append(f.read())
         self.assertNotEqual(*whole)
@@ -212,7 +214,7 @@ class ChangingFiles(unittest.TestCase):
             self.hammer("big.pbrt", change, ["explain", "big.pbrt"])
             # These two also answer no.
             self.hammer("big.pbrt", change, ["fmt", "--check", "big.pbrt"], codes=(0, 1, 3, 4))
-            self.hammer("big.pbrt", change, ["check", "big.pbrt"], codes=(0, 1, 3, 4))
+            self.hammer("big.pbrt", change, ["check", "big.pbrt"], codes=(0, 1))
 
 
 if __name__ == "__main__":

@@ -106,15 +106,16 @@ class EndlessFiles(unittest.TestCase):
                 self.write("model.gltf", model_with(part, name))
                 self.write("scene.pbrt", HEAD + 'Shape "gltf" "string filename" "model.gltf"\nWorldEnd\n')
                 code, said = self.whit("scene.pbrt", "--outfile", "picture.exr", "--quiet", "--display", "none")
-                # The first bytes of a longer buffer are a buffer; all three points of this one are the same.
-                self.assertIn(code, (0,) if name == "sparse.bin" else (3, 4), "%s: %s" % (name, said))
+                self.assertIn(code, (3, 4), "%s: %s" % (name, said))
+                # The first bytes of a longer buffer are a buffer: there it is the picture that is missing.
+                self.assertIn("here.png" if name == "sparse.bin" else os.path.basename(name), said)
 
     def test_as_the_scene(self):
         for ending in (".pbrt", ".gltf", ".glb", ".ply"):
             for name in self.odd_files(ending):
                 for command in ([], ["check"], ["--cat"], ["fmt"], ["explain"]):
                     code, said = self.whit(*command, name)
-                    self.assertIn(code, (3, 4), "%s %s: %s" % (command, name, said))
+                    self.assertIn(code, (1,) if "check" in command else (3, 4), "%s %s: %s" % (command, name, said))
                     self.assertIn(os.path.basename(name), said)
 
     def test_pipes_of_ones_own_are_read(self):
@@ -132,7 +133,7 @@ class EndlessFiles(unittest.TestCase):
         for args in (["-"], ["fmt"], ["--cat", "-"], ["check", "-"]):
             with open("/dev/zero", "rb") as zeros:
                 code, said = self.whit(*args, stdin=zeros)
-            self.assertEqual(code, 4, said)
+            self.assertEqual(code, 1 if "check" in args else 4, said)
             self.assertIn("it has more than 1073741824 bytes, the limit piped-bytes", said)
 
     def test_a_chain_of_files(self):
@@ -141,7 +142,7 @@ class EndlessFiles(unittest.TestCase):
             self.write("%d.pbrt" % i, 'Include "%d.pbrt"\n' % (i + 1))
         for command in ([], ["check"], ["--cat"], ["fmt", "--expand"]):
             code, said = self.whit(*command, "0.pbrt")
-            self.assertEqual(code, 3, said)
+            self.assertEqual(code, 1 if "check" in command else 3, said)
             self.assertIn("255.pbrt:1:9: error: files include one another more than 256 deep, the limit include-depth", said)
 
     def test_files_that_double(self):
@@ -149,7 +150,7 @@ class EndlessFiles(unittest.TestCase):
             self.write("%d.pbrt" % i, ('Include "%d.pbrt"\n' % (i + 1)) * 2 if i < 39 else "Identity\n")
         for command in ([], ["check"], ["--cat"]):
             code, said = self.whit(*command, "0.pbrt")
-            self.assertEqual(code, 3, said)
+            self.assertEqual(code, 1 if "check" in command else 3, said)
             self.assertIn("files are included more than 500000 times, the limit includes", said)
             self.assertEqual(said.count("the limit includes"), 1, said)
 
@@ -172,7 +173,7 @@ class EndlessFiles(unittest.TestCase):
                         self.assertNotIn("SECRET", said, "%s: %s" % (statement % file, said))
             for command in ([], ["check"], ["--cat"], ["fmt"], ["explain"]):
                 code, said = self.whit(*command, name)
-                self.assertIn(code, (3, 4), said)
+                self.assertIn(code, (1,) if "check" in command else (3, 4), said)
                 self.assertNotIn("SECRET", said)
             for args in (["diff", "--policy", name, ".", "."], ["diff", name, name]):
                 _, said = self.whit(*args)

@@ -238,6 +238,9 @@ TEST_F(PolicyFile, NamesTheFileThatIsNotThere) {
 TEST_F(PolicyFile, UnknownNamesAreMistakes) {
   expect_error(rule(R"("fail_abov": {})"), {"/rules/0/fail_abov: a rule has no \"fail_abov\"", "\"fail_above\"?"});
   expect_error(rule(R"("zzzzzzzz": 1)"), {"/rules/0/zzzzzzzz: ", "it may have match, comment, fail_above"});
+  // Of what is no policy nothing is quoted.
+  EXPECT_EQ(read(R"({"auths": {"SECRET": 1}})").error.find("auths"), std::string::npos);
+  EXPECT_EQ(read(R"({"rules": SECRET})").error.find("SECRET"), std::string::npos);
   expect_error(read(R"({"rule": []})"), {"/rule: a policy has no \"rule\"", "did you mean \"rules\"?"});
   expect_error(rule(R"("fail_above": {"relmse_robst": 1})"),
                {"/rules/0/fail_above/relmse_robst: there is no measure", "did you mean \"relmse_robust\"?"});
