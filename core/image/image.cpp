@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <fstream>
 #include <new>
 #include <stdexcept>
 #include <system_error>
@@ -19,6 +21,14 @@
 namespace whit {
 namespace {
 
+// Of no format, as a file is of which nothing has been written yet. Readers of some formats would go through all of it.
+bool begins_with_zeros(const std::string& path) {
+  std::array<char, 64> head{};
+  std::ifstream in(path, std::ios::binary);
+  in.read(head.data(), head.size());
+  return in.gcount() == head.size() && std::all_of(head.begin(), head.end(), [](char c) { return c == 0; });
+}
+
 // Why a path cannot be a picture at all, or "": OpenImageIO's own texts for these name formats, not reasons.
 std::string file_problem(const PictureFile& picture) {
   if (picture.bytes) return picture.bytes->bytes.empty() ? "it has no bytes" : "";
@@ -26,7 +36,9 @@ std::string file_problem(const PictureFile& picture) {
   if (!state.exists()) return "no such file";
   if (std::error_code ignored; std::filesystem::is_directory(picture.path, ignored)) return "it is a folder";
   const std::string problem = why_unreadable(picture.path);
-  return problem.empty() && state.size == 0 ? "the file is empty" : problem;
+  if (!problem.empty()) return problem;
+  if (state.size == 0) return "the file is empty";
+  return begins_with_zeros(picture.path) ? "not a picture in a known format: it begins with zeros" : "";
 }
 
 template <class T>

@@ -125,6 +125,7 @@ TEST(ReadImage, errors_name_the_file_and_the_reason) {
   expect("/nowhere/x.png", "no such file");
   expect(test::temp_folder(), "folder");
   expect(write_temp("empty.png", ""), "empty");
+  expect(write_temp("zeros.png", std::string(300, '\0')), "it begins with zeros");
   expect(write_temp("noise.png", std::string(300, 'q')), ": ");
   expect(write_temp("noise.exr", std::string(300, 'q')), ": ");
   // 60000 x 60000 pixels in 18 bytes.
