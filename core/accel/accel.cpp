@@ -220,6 +220,7 @@ void Accel::Impl::sweep_instances() {
   placed.clear();
 }
 
+/// Throws std::bad_alloc where there is not enough memory, as watch_ends() does.
 std::string Accel::build() {
   impl_->commit();
   impl_->sweep_instances();

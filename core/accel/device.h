@@ -9,15 +9,19 @@
 #include <utility>
 
 #include "core/accel/embree_geometry.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 
 class AccelDevice {
  public:
   explicit AccelDevice(const std::string& config) : device_(rtcNewDevice(config.empty() ? nullptr : config.c_str())) {
+    if (!device_) throw OutOfMemory("the ray tracer's library does not start");
     rtcSetDeviceErrorFunction(
         device_,
-        [](void* self, RTCError, const char* text) { static_cast<AccelDevice*>(self)->note(text ? text : "unknown"); },
+        [](void* self, RTCError code, const char* text) {
+          static_cast<AccelDevice*>(self)->note(code, text ? text : "unknown");
+        },
         this);
     rtcSetDeviceMemoryMonitorFunction(
         device_,
@@ -53,11 +57,13 @@ class AccelDevice {
     rtcSetGeometryUserData(g, &user);
     return g;
   }
-  /// Of what Embree was asked since the last call; "" when all went well.
+  /// Of what Embree was asked since the last call; "" when all went well. Throws OutOfMemory where that was it.
   std::string problem() {
     const RTCError code = rtcGetDeviceError(device_);
     const std::lock_guard lock(mutex_);
     const std::string error = std::exchange(error_, {});
+    if (std::exchange(out_of_memory_, false) || code == RTC_ERROR_OUT_OF_MEMORY)
+      throw OutOfMemory("the ray tracer has not enough memory");
     if (code == RTC_ERROR_NONE && error.empty()) return {};
     return fmt::format("the ray tracer could not be built: {}", error.empty() ? "unknown error" : error);
   }
@@ -66,14 +72,17 @@ class AccelDevice {
 
  private:
   /// Meshes are built on several threads.
-  void note(const char* text) {
+  void note(RTCError code, const char* text) {
     const std::lock_guard lock(mutex_);
     error_ = text;
+    // What follows it may be called by another name.
+    out_of_memory_ = out_of_memory_ || code == RTC_ERROR_OUT_OF_MEMORY;
   }
 
   RTCDevice device_;
   std::mutex mutex_;
   std::string error_;
+  bool out_of_memory_ = false;
 };
 
 }  // namespace whit

@@ -586,6 +586,30 @@ std::string check_header(const Header& header) {
   return p.is_list && is_integer(p.type) ? "" : "PLY \"" + p.name + "\" is not a list of integers";
 }
 
+/// Triangles that a face becomes, 1 or 2: of files whose faces come last, by the last of them; of others the more.
+uint64_t triangles_of_face(const Header& header, std::string_view data) {
+  const Element& face = header.elements.back();
+  if (face.name != "face" || face.properties.size() != 1) return 2;
+  const Property& p = face.properties[0];
+  if (header.format != Format::Ascii) {
+    // A file of quads is one of a corner more for each, whatever stands before.
+    size_t record = 0;
+    for (const Element& e : header.elements) {
+      if (e.name == "face") continue;
+      if (has_lists(e)) return 2;
+      size_t bytes = 0;
+      for (const Property& of : e.properties) bytes += size_of(of.type);
+      record += bytes * e.count;
+    }
+    const size_t corners = 3 * size_of(p.type) + size_of(p.count_type);
+    const double of_face =
+        static_cast<double>(data.size() - std::min(data.size(), record)) / static_cast<double>(face.count);
+    return of_face > static_cast<double>(corners) + 0.5 * static_cast<double>(size_of(p.type)) ? 2 : 1;
+  }
+  const size_t end = data.find_last_not_of(" \t\r\n"), begin = data.find_last_of("\r\n", end);
+  return end != data.npos && begin != data.npos && Words(data.substr(begin + 1))[0] == "3" ? 1 : 2;
+}
+
 /// Makes 0 of what is NaN or infinite; returns how many there were.
 size_t clear_bad_numbers(std::vector<float>& values) {
   // x * 0 is 0 for every finite x and NaN for the others.
@@ -611,6 +635,22 @@ std::string check_mesh(const PlyMesh& mesh) {
 }
 
 }  // namespace
+
+PlyCounts count_ply(std::string_view bytes, const MeshAttributes& wanted) {
+  Header header;
+  std::string_view data = bytes;
+  if (!parse_header(data, header).empty() || is_empty_mesh(header) || !check_header(header).empty()) return {};
+  const Element &vertex = *only_element(header, "vertex"), &face = *only_element(header, "face");
+  const VertexColumns columns(vertex, wanted);
+  PlyCounts counts{vertex.count, face.count, 0};
+  counts.floats = (columns.has_normals() ? 3 : 0) + (columns.has_uvs() ? 2 : 0) + (columns.uv1[0] >= 0 ? 2 : 0) +
+                  (columns.color[0] >= 0 ? 4 : 0) + (columns.tangent[0] >= 0 ? 3 : 0) + (columns.sign >= 0 ? 1 : 0);
+  counts.triangles *= triangles_of_face(header, data);
+  // What a file has no room for is not read.
+  counts.vertices = std::min<uint64_t>(counts.vertices, data.size());
+  counts.triangles = std::min<uint64_t>(counts.triangles, 2 * data.size());
+  return counts;
+}
 
 std::string parse_ply(std::string_view bytes, PlyMesh& out, const MeshAttributes& wanted) {
   out = {};

@@ -30,6 +30,15 @@ struct PlyMesh {
   size_t skipped_faces = 0;            ///< Faces with fewer than 3 or more than 4 corners, which are left out.
 };
 
+/// How much the mesh of a PLY file is, as far as its header and a look at the end tell.
+struct PlyCounts {
+  uint64_t vertices = 0, triangles = 0;
+  uint64_t floats = 0;  ///< Of each vertex, beside its position.
+};
+
+/// Counts without reading more than the header and the last few lines. Zeros of files that parse_ply() has nothing good to say of.
+PlyCounts count_ply(std::string_view bytes, const MeshAttributes& wanted = {});
+
 /// Reads the mesh from the file's bytes; it is empty if the file says that there are no faces or no vertices. Returns ""
 /// or what is wrong ("PLY data ends early"); `out` is then unspecified. Counts of the header are checked against the size of the data before anything is allocated.
 std::string parse_ply(std::string_view bytes, PlyMesh& out, const MeshAttributes& wanted = {});

@@ -2,10 +2,31 @@
 
 #include <fmt/format.h>
 
+#include "core/gltf/accessor.h"
+
 namespace whit::gltf {
 
 std::string AttachedPrimitive::read(MeshData& out) const {
   return read_primitive(*model_, primitive_, pose_, needs_, out);
+}
+
+/// Vertices that tangents are made for may not be shared, which is not known before.
+MemoryNeed AttachedPrimitive::memory_need(const MeshAttributes& attributes) const {
+  const Attributes& a = primitive_.attributes;
+  if (primitive_.mode == Primitive::Mode::Points || primitive_.mode == Primitive::Mode::Lines || a.position < 0)
+    return {};
+  const uint64_t vertices = element_count(*model_, a.position);
+  const uint64_t corners = primitive_.indices >= 0 ? element_count(*model_, primitive_.indices) : vertices;
+  const bool is_list = primitive_.mode == Primitive::Mode::Triangles || primitive_.draco;
+  const bool normals = a.normal >= 0 || needs_.tangents;
+  MemoryNeed need{.vertices = vertices, .triangles = is_list ? corners / 3 : corners};
+  need.floats = (normals ? 3 : 0) + (needs_.tangents ? 4 : 0) + (needs_.uv0 && a.uv[0] >= 0 ? 2 : 0) +
+                (needs_.uv1 && attributes.uvs1 && a.uv[1] >= 0 ? 2 : 0) +
+                (needs_.colors && attributes.colors && a.color >= 0 ? 4 : 0);
+  // About 12 bytes for a vertex's place and 4 for each float and index.
+  need.mapped = vertices * (12 + 4 * need.floats) + 4 * corners;
+  need.making = 4 * corners;
+  return need;
 }
 
 /// The model itself is named by where it is, for it is kept as long as this is.

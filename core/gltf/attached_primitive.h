@@ -6,16 +6,18 @@
 
 #include "core/base/attachment.h"
 #include "core/gltf/primitive.h"
+#include "core/plugin/memory_need.h"
 
 namespace whit::gltf {
 
 /// Reads the primitive when asked; keeps the model.
-class AttachedPrimitive final : public MeshSource {
+class AttachedPrimitive final : public MeshSource, public NeedsMemory {
  public:
   AttachedPrimitive(std::shared_ptr<const Model> model, const Primitive& primitive, Pose pose, const MeshNeeds& needs)
       : model_(std::move(model)), primitive_(primitive), pose_(std::move(pose)), needs_(needs) {}
   std::string read(MeshData& out) const override;
   std::string identity() const override;
+  MemoryNeed memory_need(const MeshAttributes& attributes) const override;
 
  private:
   const std::shared_ptr<const Model> model_;

@@ -29,6 +29,8 @@ std::unique_ptr<PictureRows> open_picture(const PictureFile& file);
 
 /// The error for users, which names the file, when opening or reading it has thrown `e`.
 std::string picture_error(const std::string& path, const std::exception& e);
+/// Whether that was for lack of memory.
+bool is_out_of_memory(const std::exception& e);
 
 /// A file that is closed when its owner goes.
 using FilePtr = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;

@@ -17,6 +17,7 @@
 #include "core/image/oiio/module.h"
 #include "core/image/picture_change.h"
 #include "core/image/signature.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 namespace {
@@ -45,6 +46,7 @@ template <class T>
 Result<T> failed(const PictureFile& file, const std::exception& e) {
   Result<T> result;
   result.error = picture_error(file.path, e);
+  result.out_of_memory = is_out_of_memory(e);
   return result;
 }
 
@@ -69,6 +71,8 @@ Image read_all(PictureRows& rows) {
   Image image;
   static_cast<ImageInfo&>(image) = rows.info;
   const size_t row = static_cast<size_t>(image.width) * image.channels;
+  need_memory(rows.memory() + sizeof(float) * row * image.height,
+              fmt::format("reading all of its {} x {} pixels", image.width, image.height));
   image.pixels.resize(row * image.height);
   for (int y = 0; y < image.height; ++y) {
     float* const to = image.pixels.data() + row * (rows.bottom_first ? image.height - 1 - y : y);
@@ -108,11 +112,14 @@ std::unique_ptr<PictureRows> open_picture(const PictureFile& file) {
 }
 
 std::string picture_error(const std::string& path, const std::exception& e) {
-  std::string reason = dynamic_cast<const std::bad_alloc*>(&e) ? "not enough memory" : e.what();
+  const bool is_wordless = is_out_of_memory(e) && !dynamic_cast<const OutOfMemory*>(&e);
+  std::string reason = is_wordless ? "not enough memory" : e.what();
   while (!reason.empty() && (reason.back() == '\n' || reason.back() == '.')) reason.pop_back();
   if (reason.empty()) reason = "not a picture in a known format";
   return fmt::format("cannot read image \"{}\": {}", path, reason);
 }
+
+bool is_out_of_memory(const std::exception& e) { return dynamic_cast<const std::bad_alloc*>(&e) != nullptr; }
 
 Result<ImageInfo> probe_image(const PictureFile& file) {
   return from_file<ImageInfo>(file, [](const PictureRows& rows) { return rows.info; });

@@ -19,6 +19,7 @@ template <class T>
 struct Result {
   T value{};
   std::string error;
+  bool out_of_memory = false;  ///< The error is for lack of memory.
   bool ok() const { return error.empty(); }
 };
 

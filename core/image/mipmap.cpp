@@ -1,7 +1,7 @@
 // Building the pyramid; mipmap_lookup.cpp filters.
 //
 // A picture comes in row by row, and a level makes a row of two rows of the finer one. So of levels that are not kept there are
-// two rows in memory, and of a picture whose sides are powers of two only what the reader holds.
+// a few rows in memory, and of the picture what the reader holds, with a few more where its sides are no powers of two.
 #include "core/image/mipmap.h"
 
 #ifdef __F16C__
@@ -9,8 +9,10 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <type_traits>
@@ -95,6 +97,34 @@ void halve_rows(const float* upper, const float* lower, int width, int channels,
 // For lookups that are only asked which level they need.
 constexpr float kNoTexel[3] = {};
 
+// Rows of texels of a picture that comes in, those that enlarging it still wants: the latest, and the first, which a texture
+// that repeats has behind the last.
+class ArrivingRows {
+ public:
+  static constexpr int kFirst = 16, kLatest = 8;
+
+  // `next(to)` puts the next row of so many numbers to `to`.
+  ArrivingRows(size_t numbers, std::function<void(float* to)> next) : next_(std::move(next)) {
+    for (std::vector<float>& row : first_) row.resize(numbers);
+    for (std::vector<float>& row : latest_) row.resize(numbers);
+  }
+
+  const std::vector<float>& row(int y) {
+    for (; arrived_ <= y; ++arrived_) next_(place(arrived_).data());
+    return place(y);
+  }
+
+ private:
+  std::vector<float>& place(int y) {
+    return y < kFirst ? first_[static_cast<size_t>(y)] : latest_[static_cast<size_t>(y % kLatest)];
+  }
+
+  std::function<void(float* to)> next_;
+  std::array<std::vector<float>, kFirst> first_;
+  std::array<std::vector<float>, kLatest> latest_;
+  int arrived_ = 0;
+};
+
 // Rows of a picture in memory.
 template <class Number>
 class ArrayRows : public PictureRows {
@@ -119,14 +149,20 @@ class ArrayRows : public PictureRows {
 // Fills levels of an outline.
 class MipMap::Builder {
  public:
-  Builder(MipMap& map, const ImageInfo& image, const MipMapOptions& options, int first)
+  Builder(MipMap& map, const ImageInfo& image, const MipMapOptions& options, int first,
+          std::shared_ptr<const TexelBlock> room = nullptr)
       : map_(map),
         image_(image),
         options_(options),
         texels_(image, taken(options), options.gamma, scales_last(image, options) ? 1 : options.scale),
         below_(map.levels_.size()) {
     map.first_ = first;
-    for (int i = first; i < map.level_count(); ++i) map.levels_[i] = allocate(i);
+    map.in_file_ = std::move(room);
+    size_t at = 0;
+    for (int i = first; i < map.level_count(); ++i) {
+      map.levels_[i] = map.in_file_ ? map.level_in(map.in_file_, i, at) : allocate(i);
+      at += ScratchFile::room_for(map.bytes_of(i));
+    }
     row_.resize(numbers(0));
     sums_.resize(numbers(0));
     for (size_t i = 1; i < below_.size(); ++i) below_[i].row.resize(numbers(static_cast<int>(i)));
@@ -146,19 +182,15 @@ class MipMap::Builder {
     }
   }
 
-  // Most of what read() has in memory, besides the rows' own and the levels.
-  static size_t bytes_to_read(const ImageInfo& image, const MipMapOptions& options) {
-    const size_t channels = channels_of(image, options), pixels = static_cast<size_t>(image.width) * image.height;
-    const size_t strips = sizeof(float) * channels * 12 * std::bit_ceil(static_cast<unsigned>(image.width));
-    if (sides_are_powers_of_two(image)) return strips;
-    return strips + pixels * (image.format == SampleFormat::UInt8 ? image.channels : sizeof(float) * channels);
-  }
-
  private:
-  // What is needed to make rows of a level: the row before, where one of two has come in.
+  // What is needed to make rows of a level: the rows of the finer one of which only one of two has come in.
+  struct Waiting {
+    int t = -1;  // Its number; -1 for none.
+    std::vector<float> row;
+  };
   struct Below {
-    std::vector<float> row, waiting;
-    bool waits = false;
+    std::vector<float> row;
+    std::array<Waiting, 2> waiting;
   };
 
   // From the number of a row that comes in to that of a texel's, and back.
@@ -176,10 +208,18 @@ class MipMap::Builder {
     return level;
   }
 
+  // Of what has been written to a file so much is in memory.
+  void note_written(size_t bytes) {
+    constexpr size_t kMost = size_t{16} << 20;
+    if (!map_.in_file_ || (written_ += bytes) < kMost) return;
+    map_.in_file_->give_back();
+    written_ = 0;
+  }
+
   // Where row t of a level goes: only the builder writes to it.
   template <class T>
   T* row_of(int i, int t) {
-    return map_.levels_[i]->memory->as<T>() + numbers(i) * t;
+    return static_cast<T*>(const_cast<void*>(map_.levels_[i]->texels)) + numbers(i) * t;
   }
 
   void add_bytes(int t, const uint8_t* pixels) {
@@ -187,7 +227,7 @@ class MipMap::Builder {
       texels_.convert(pixels, row_.data());
       return add_finest(t);
     }
-    if (map_.first_ == 0) texels_.pick(pixels, row_of<uint8_t>(0, t));
+    if (map_.first_ == 0) texels_.pick(pixels, row_of<uint8_t>(0, t)), note_written(numbers(0));
     if (map_.level_count() == 1) return;
     texels_.convert(pixels, row_.data());
     descend(0, t, row_.data());
@@ -207,44 +247,66 @@ class MipMap::Builder {
     if (i >= map_.first_) {
       if (map_.storage(i) == Storage::Halves) to_halves(row, numbers(i), row_of<Imath::half>(i, t));
       else std::copy_n(row, numbers(i), row_of<float>(i, t));
+      note_written(sizeof(float) * numbers(i));
     }
     if (i + 1 < map_.level_count()) descend(i, t, row);
   }
 
-  // Row t of level i and the one that it makes a row of the next level with, when both are there. They come in order, or in
-  // reverse order.
+  // Row t of level i and the one that it makes a row of the next level with, when both are there. They come in order or in
+  // reverse order, but for the first few, which may come last: so two wait at most.
   void descend(int i, int t, const float* row) {
     Below& next = below_[i + 1];
     const float *upper = row, *lower = wrap_along_t(map_.wrap_) == WrapMode::Black ? nullptr : row;
     if (map_.height(i) > 1) {
-      next.waits = !next.waits;
-      if (next.waits) return next.waiting.assign(row, row + numbers(i));
-      upper = t % 2 == 0 ? row : next.waiting.data();
-      lower = t % 2 == 0 ? next.waiting.data() : row;
+      const auto waiting = [&](int number) {
+        return std::find_if(next.waiting.begin(), next.waiting.end(), [&](const Waiting& w) { return w.t == number; });
+      };
+      const auto other = waiting(t ^ 1);
+      if (other == next.waiting.end()) {
+        Waiting& place = *waiting(-1);
+        place.t = t;
+        return place.row.assign(row, row + numbers(i));
+      }
+      other->t = -1;
+      upper = t % 2 == 0 ? row : other->row.data();
+      lower = t % 2 == 0 ? other->row.data() : row;
     }
     halve_rows(upper, lower, map_.width(i), map_.channels_, map_.wrap_, sums_.data(), next.row.data());
     add(i + 1, t / 2, next.row.data());
   }
 
-  // Rows far apart make the first, where the texture repeats: the picture has to be there.
+  // Where the texture repeats, the first rows are made of the picture's last too, and are made last.
   void read_and_enlarge(PictureRows& rows) {
     const bool bytes = image_.format == SampleFormat::UInt8;
-    const size_t row = static_cast<size_t>(image_.width) * (bytes ? image_.channels : map_.channels_);
-    const TexelBlock picture(row * image_.height * (bytes ? 1 : sizeof(float)));
-    uint8_t* const pixels = picture.as<uint8_t>();
-    float* const texels = picture.as<float>();
-    for (int y = 0; y < image_.height; ++y) {
-      if (bytes) std::copy_n(rows.next_bytes(), row, pixels + row * y);
-      else texels_.convert(rows.next_floats(), texels + row * y);
-    }
-    EnlargedRows enlarged(image_.width, image_.height, map_.channels_, map_.wrap_, [&](int t, float* to) {
-      if (bytes) texels_.convert(pixels + row * flipped(t), to);
-      else std::copy_n(texels + row * flipped(t), row, to);
+    const size_t row = static_cast<size_t>(image_.width) * map_.channels_;
+    ArrivingRows arriving(row, [&](float* to) {
+      if (bytes) texels_.convert(rows.next_bytes(), to);
+      else texels_.convert(rows.next_floats(), to);
     });
-    for (int t = 0; t < map_.height(); ++t) {
+    EnlargedRows enlarged(image_.width, image_.height, map_.channels_, map_.wrap_,
+                          [&](int t, float* to) { std::copy_n(arriving.row(flipped(t)).data(), row, to); });
+    const int height = map_.height();
+    const auto make = [&](int t) {
       enlarged.make(t, row_.data());
       add_finest(t);
+    };
+    const auto wants_last = [&](int t) {
+      const auto is_last = [&](int small) {
+        return small >= 0 && flipped(small) >= image_.height - EnlargedRows::kTaps;
+      };
+      const auto& small = enlarged.rows_of(t);
+      return std::any_of(small.begin(), small.end(), is_last);
+    };
+    std::vector<int> late;
+    for (int y = 0; y < height; ++y) {
+      const int t = flips_ ? height - 1 - y : y;
+      // All of a picture of few rows are there.
+      if (image_.height > ArrivingRows::kFirst && y < height / 2 && wants_last(t)) late.push_back(t);
+      else make(t);
     }
+    // The picture is read to its end, which tells whether it is whole.
+    arriving.row(image_.height - 1);
+    for (const int t : late) make(t);
   }
 
   MipMap& map_;
@@ -254,6 +316,7 @@ class MipMap::Builder {
   bool flips_ = false;
   std::vector<float> row_, sums_;
   std::vector<Below> below_;
+  size_t written_ = 0;  // to a file, since memory was given back
 };
 
 MipMap::MipMap(const ImageInfo& image, const MipMapOptions& options)
@@ -280,8 +343,9 @@ MipMap::MipMap(const ImageInfo& image, const MipMapOptions& options)
   first_ = level_count();
 }
 
-MipMap::MipMap(PictureRows& rows, const MipMapOptions& options, int first) : MipMap(rows.info, options) {
-  Builder(*this, rows.info, options, first).read(rows);
+MipMap::MipMap(PictureRows& rows, const MipMapOptions& options, int first, std::shared_ptr<const TexelBlock> room)
+    : MipMap(rows.info, options) {
+  Builder(*this, rows.info, options, first, std::move(room)).read(rows);
 }
 
 MipMap::MipMap(const Image& image, const MipMapOptions& options)
@@ -317,9 +381,33 @@ size_t MipMap::bytes_of(int level) const {
 
 size_t MipMap::bytes_to_build(const PictureRows& rows, const MipMapOptions& options, int first) {
   const MipMap outline(rows.info, options);
-  size_t sum = rows.memory() + Builder::bytes_to_read(rows.info, options);
+  size_t sum = rows.memory() + bytes_to_read(rows.info, options);
   for (int i = first; i < outline.level_count(); ++i) sum += outline.bytes_of(i);
   return sum;
+}
+
+size_t MipMap::bytes_to_read(const ImageInfo& image, const MipMapOptions& options) {
+  const size_t row = sizeof(float) * channels_of(image, options);
+  const size_t strips = row * 12 * std::bit_ceil(static_cast<unsigned>(image.width));
+  if (sides_are_powers_of_two(image)) return strips;
+  return strips + row * (ArrivingRows::kFirst + ArrivingRows::kLatest) * static_cast<size_t>(image.width);
+}
+
+size_t MipMap::bytes_of_levels(const ImageInfo& image, const MipMapOptions& options, int first) {
+  const MipMap outline(image, options);
+  size_t sum = 0;
+  for (int i = first; i < outline.level_count(); ++i) sum += ScratchFile::room_for(outline.bytes_of(i));
+  return sum;
+}
+
+// A level as it is in a part of a file, from a byte on.
+std::shared_ptr<const MipMap::Level> MipMap::level_in(const std::shared_ptr<const TexelBlock>& room, int i,
+                                                      size_t at) const {
+  const auto level = std::make_shared<Level>(*levels_[i]);
+  level->storage = storage(i);
+  level->memory = room;
+  level->texels = room->as<void>(at);
+  return level;
 }
 
 size_t MipMap::bytes() const {
@@ -337,10 +425,7 @@ std::unique_ptr<const MipMap> MipMap::in_file(ScratchFile& file) const {
   if (!copy->in_file_) return nullptr;
   size_t at = 0;
   for (int i = first_; i < level_count(); ++i) {
-    const auto level = std::make_shared<Level>(*levels_[i]);
-    level->memory = copy->in_file_;
-    level->texels = copy->in_file_->as<void>(at);
-    copy->levels_[i] = level;
+    copy->levels_[i] = level_in(copy->in_file_, i, at);
     at += ScratchFile::room_for(bytes_of(i));
   }
   return copy;

@@ -70,8 +70,10 @@ class MipMap {
   /// Has no level at all, but its lookups tell which one they need.
   MipMap(const ImageInfo& image, const MipMapOptions& options);
 
-  /// Reads a picture to its end, and keeps the levels from `first` on. May throw ExceedsHalves, and what reading throws.
-  MipMap(PictureRows& rows, const MipMapOptions& options, int first = 0);
+  /// Reads a picture to its end, and keeps the levels from `first` on: in `room`, a part of a file for bytes_of_levels(),
+  /// where that is not null. May throw ExceedsHalves, and what reading throws.
+  MipMap(PictureRows& rows, const MipMapOptions& options, int first = 0,
+         std::shared_ptr<const TexelBlock> room = nullptr);
   MipMap(const Image& image, const MipMapOptions& options);
   MipMap(const ByteImage& image, const MipMapOptions& options);
 
@@ -81,6 +83,12 @@ class MipMap {
   /// At most this many bytes are alive at once while a picture is read and its levels from `first` on are built, both
   /// included.
   static size_t bytes_to_build(const PictureRows& rows, const MipMapOptions& options, int first);
+
+  /// Of these, what is beside the reader's and the levels.
+  static size_t bytes_to_read(const ImageInfo& image, const MipMapOptions& options);
+
+  /// Of the levels from `first` on of such a picture, one after another in a file.
+  static size_t bytes_of_levels(const ImageInfo& image, const MipMapOptions& options, int first);
 
   int channels() const { return channels_; }  ///< 1 or 3.
   int level_count() const { return static_cast<int>(levels_.size()); }
@@ -128,6 +136,7 @@ class MipMap {
 
   Storage storage(int level) const { return level == 0 ? finest_storage_ : coarse_storage_; }
   size_t bytes_of(int level) const;
+  std::shared_ptr<const Level> level_in(const std::shared_ptr<const TexelBlock>& room, int i, size_t at) const;
   template <int C, class F>
   int with_sampler(const F& f) const;
   template <class S>

@@ -21,6 +21,7 @@
 
 #include "core/base/plain_text.h"
 #include "core/image/decode.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 namespace {
@@ -171,6 +172,8 @@ PicturePlanes read_exr_planes(const std::string& path) {
   if (sources.empty()) throw std::runtime_error("it has no channels");
   picture.format = *std::max_element(picture.formats.begin(), picture.formats.end());
   if (std::string problem = size_problem(path, picture); !problem.empty()) throw std::runtime_error(problem);
+  need_memory(sizeof(float) * sources.size() * static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height),
+              fmt::format("reading {} channels of its {} x {} pixels", sources.size(), picture.width, picture.height));
   picture.planes.assign(sources.size(), std::vector<float>(static_cast<size_t>(picture.width) * picture.height));
   for (int part = 0; part < file.parts(); ++part) read_part(file, part, sources, picture);
   check_whole_numbers(sources, picture);

@@ -1,4 +1,5 @@
 #include <OpenEXR/ImfTestFile.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -8,6 +9,7 @@
 #include "core/image/picture_change.h"
 #include "core/image/planes.h"
 #include "core/image/read_exr.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 namespace {
@@ -27,6 +29,9 @@ PicturePlanes read_rows(const PictureFile& file) {
   PicturePlanes picture;
   static_cast<ImageInfo&>(picture) = rows->info;
   const auto width = static_cast<size_t>(picture.width);
+  need_memory(rows->memory() +
+                  sizeof(float) * width * static_cast<size_t>(picture.height) * static_cast<size_t>(picture.channels),
+              fmt::format("reading all of its {} x {} pixels", picture.width, picture.height));
   picture.formats.assign(static_cast<size_t>(picture.channels), picture.format);
   picture.planes.assign(picture.formats.size(), std::vector<float>(width * static_cast<size_t>(picture.height)));
   for (int y = 0; y < picture.height; ++y) {
@@ -49,7 +54,9 @@ Result<PicturePlanes> read_planes(const PictureFile& file) {
     // A pipe would be waited for.
     const bool on_disk = !file.bytes && why_unreadable(file.path).empty();
     result.value = on_disk && Imf::isOpenExrFile(file.path.c_str()) ? read_exr_planes(file.path) : read_rows(file);
-  } catch (const std::exception& e) { result.error = picture_error(file.path, e); }
+  } catch (const std::exception& e) {
+    result.error = picture_error(file.path, e), result.out_of_memory = is_out_of_memory(e);
+  }
   if (const std::string change = change_of(file, before); !change.empty())
     result.error = picture_error(file.path, std::runtime_error(change));
   return result;

@@ -72,4 +72,14 @@ std::shared_ptr<const TexelBlock> ScratchFile::write(const std::vector<std::span
   } catch (const std::bad_alloc&) { return nullptr; }
 }
 
+std::shared_ptr<const TexelBlock> ScratchFile::room(size_t bytes) {
+  size_t begin = 0;
+  if (!reserve(bytes, begin)) return nullptr;
+  // Writing to a page that the disk has no block for would end the program. That of others still may have room.
+  if (posix_fallocate(file_, static_cast<off_t>(begin), static_cast<off_t>(bytes)) != 0) return nullptr;
+  try {
+    return std::make_shared<TexelBlock>(file_, begin, bytes, true);
+  } catch (const std::bad_alloc&) { return nullptr; }
+}
+
 }  // namespace whit

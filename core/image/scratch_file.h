@@ -26,6 +26,10 @@ class ScratchFile {
   /// The pieces one after another, written and mapped; null when there is no folder or no room for them.
   std::shared_ptr<const TexelBlock> write(const std::vector<std::span<const std::byte>>& pieces);
 
+  /// So many bytes to be written to, mapped, which the file has room for: pages go to the disk when memory is short. Null as
+  /// above.
+  std::shared_ptr<const TexelBlock> room(size_t bytes);
+
  private:
   static constexpr size_t kAlign = 64;
   bool reserve(size_t bytes, size_t& at);

@@ -22,8 +22,10 @@ TexelBlock::TexelBlock(size_t bytes) : bytes_(bytes) {
                       : mapped(bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
 }
 
-TexelBlock::TexelBlock(int file, size_t at, size_t bytes)
-    : memory_(mapped(bytes, PROT_READ, MAP_SHARED, file, at)), bytes_(bytes), of_file_(true) {}
+TexelBlock::TexelBlock(int file, size_t at, size_t bytes, bool writable)
+    : memory_(mapped(bytes, writable ? PROT_READ | PROT_WRITE : PROT_READ, MAP_SHARED, file, at)),
+      bytes_(bytes),
+      of_file_(true) {}
 
 TexelBlock::~TexelBlock() {
   if (in_heap()) ::operator delete(memory_);

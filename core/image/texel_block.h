@@ -12,8 +12,8 @@ class TexelBlock {
   /// Not filled with anything: a page that nobody has written to takes no memory. A few bytes more may be read.
   explicit TexelBlock(size_t bytes);
 
-  /// A part of an open file, to be read. Throws std::bad_alloc when it cannot be.
-  TexelBlock(int file, size_t at, size_t bytes);
+  /// A part of an open file, to be read, or also to be written to. Throws std::bad_alloc when it cannot be.
+  TexelBlock(int file, size_t at, size_t bytes, bool writable = false);
 
   ~TexelBlock();
   TexelBlock(const TexelBlock&) = delete;

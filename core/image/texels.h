@@ -73,14 +73,17 @@ class EnlargedRows {
  public:
   /// `row(t, to)` puts row t of the small texels to `to`.
   EnlargedRows(int width, int height, int channels, WrapMode wrap, std::function<void(int t, float* to)> row);
+  static constexpr int kTaps = 4;
   int width() const { return static_cast<int>(s_taps_.size()); }
   int height() const { return static_cast<int>(t_taps_.size()); }
+
+  /// The small rows that row t of the enlarged is made of; -1 for none.
+  const std::array<int, kTaps>& rows_of(int t) const { return t_taps_[static_cast<size_t>(t)].index; }
 
   /// Row t of the enlarged texels.
   void make(int t, float* to);
 
  private:
-  static constexpr int kTaps = 4;
   /// The four texels that make a new one, their wrapped indices and weights; index -1 contributes nothing.
   struct Taps {
     int first;

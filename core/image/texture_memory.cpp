@@ -1,5 +1,6 @@
 #include "core/image/texture_memory.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 
 #include "core/image/decode.h"
 #include "core/image/picture_change.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 namespace {
@@ -119,6 +121,7 @@ std::shared_ptr<const MipMap> TextureMemory::resident(TextureSource& source, int
     const std::string changed = change_of(picture_of(source.spec_), source.file_);
     source.error_ = changed.empty() ? picture_error(source.spec_.path, e)
                                     : picture_error(source.spec_.path, std::runtime_error(changed));
+    source.out_of_memory_ = changed.empty() && is_out_of_memory(e);
     source.outline_ = source.pyramid_ = nullptr;
     source.in_memory_ = false;
     source.rows_ = nullptr;
@@ -147,17 +150,35 @@ void TextureMemory::decode(TextureSource& source, int level) {
   const int first = std::max(0, std::min<int>(level, source.finest_) - kSpareLevels);
   replace(source, source.outline_, false);
   const auto rows = source.rows_ ? std::move(source.rows_) : open_picture(picture_of(source.spec_));
-  Workspace workspace(*this, MipMap::bytes_to_build(*rows, source.options_, first), source);
+  const size_t whole = MipMap::bytes_to_build(*rows, source.options_, first);
+  const std::shared_ptr<const TexelBlock> room = room_in_file(source, *rows, first);
+  const size_t bytes = whole - (room ? MipMap::bytes_of_levels(rows->info, source.options_, first) : 0);
+  need_memory(bytes, fmt::format("decoding its {} x {} pixels", rows->info.width, rows->info.height));
+  Workspace workspace(*this, bytes, source);
   std::unique_ptr<const MipMap> map;
   try {
-    map = std::make_unique<MipMap>(*rows, source.options_, first);
+    map = std::make_unique<MipMap>(*rows, source.options_, first, room);
   } catch (const ExceedsHalves&) { source.options_.floats = true; }
   check_unchanged(source.spec_, source.file_);
   if (!map) return workspace.become(0), decode(source, level);
   ++source.decodes_;
   decoded_bytes_ += static_cast<int64_t>(map->bytes());
+  if (room) {
+    workspace.become(0);
+    room->give_back();
+    return replace(source, std::move(map), false);
+  }
   workspace.become(map->bytes());
   replace(source, account(std::move(map)), true);
+}
+
+// Where the levels from `first` on are made if they alone are more than may be in memory; null for those that are not, and
+// where there is no room for them.
+std::shared_ptr<const TexelBlock> TextureMemory::room_in_file(const TextureSource& source, const PictureRows& rows,
+                                                              int first) {
+  constexpr size_t kLeast = size_t{4} << 20;  // for less a file is not worth it
+  const size_t levels = MipMap::bytes_of_levels(rows.info, source.options_, first);
+  return levels > std::max(kLeast, limit_.load()) ? scratch_.room(levels) : nullptr;
 }
 
 // Takes the pyramid's bytes off the sum when it goes.
@@ -172,7 +193,9 @@ std::shared_ptr<const MipMap> TextureMemory::account(std::unique_ptr<const MipMa
 void TextureMemory::bring_back(TextureSource& source) {
   const size_t bytes = source.pyramid_->bytes();
   if (bytes == 0) return;
-  Workspace(*this, bytes, source).become(bytes);
+  // What could never be in memory whole is not counted: the system has of it there what is looked at.
+  source.counted_ = bytes <= limit_ ? bytes : 0;
+  if (source.counted_ > 0) Workspace(*this, source.counted_, source).become(source.counted_);
   source.in_memory_ = true;
   ++returns_;
 }
@@ -228,7 +251,7 @@ void TextureMemory::evict(TextureSource& source) {
 // Pyramids in memory are accounted for until they go, those in the file while they are in use.
 void TextureMemory::replace(TextureSource& source, std::shared_ptr<const MipMap> pyramid, bool in_memory) {
   if (source.in_memory_ && source.pyramid_->is_in_file()) {
-    account_->bytes -= source.pyramid_->bytes();
+    account_->bytes -= source.counted_;
     source.pyramid_->give_back();
   }
   source.pyramid_ = std::move(pyramid);
@@ -266,7 +289,9 @@ Diagnostics TextureMemory::errors() const {
   Diagnostics errors;
   for (TextureSource* source : all()) {
     const std::lock_guard lock(source->mutex_);
-    if (!source->error_.empty()) errors.file_error(source->where_, source->error_);
+    if (source->error_.empty()) continue;
+    if (source->out_of_memory_) errors.add(limit_error(source->where_, source->error_, "a smaller picture takes less"));
+    else errors.file_error(source->where_, source->error_);
   }
   return errors;
 }

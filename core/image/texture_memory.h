@@ -45,7 +45,8 @@ class TextureSource {
   MipMapOptions options_;
   std::shared_ptr<const MipMap> outline_, pyramid_;  // without any level; what there is
   std::string error_;
-  bool failed_ = false;
+  bool failed_ = false, out_of_memory_ = false;
+  size_t counted_ = 0;  // of a pyramid in the file, while it is in memory: so many bytes are accounted for
 
   std::atomic<bool> in_memory_{false};  // the pyramid has levels, and they are accounted for
   std::atomic<int> first_{kNone};       // the finest that it has
@@ -85,6 +86,7 @@ class TextureMemory {
   std::vector<TextureSource*> all() const;
   void open(TextureSource& source);
   void decode(TextureSource& source, int level);
+  std::shared_ptr<const TexelBlock> room_in_file(const TextureSource& source, const PictureRows& rows, int first);
   std::shared_ptr<const MipMap> account(std::unique_ptr<const MipMap> map);
   void bring_back(TextureSource& source);
   bool make_room(size_t wanted, const TextureSource& wanting);

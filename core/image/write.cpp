@@ -8,6 +8,7 @@
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <new>
 
 #include "core/base/plain_text.h"
 #include "core/image/encode.h"
@@ -153,9 +154,12 @@ WriteResult write_image(const std::string& path, const OutputImage& image, const
       AtomicFile file(path);
       if (file.failure().empty()) encode(file, path, image, options, result.warning);
       reason = file.commit();
+    } catch (const std::bad_alloc&) {
+      result.out_of_memory = true;
+      reason = "not enough memory";
     } catch (const std::exception& e) { reason = e.what(); }
   }
-  if (!reason.empty()) result = {write_error(path, reason), ""};
+  if (!reason.empty()) result = {write_error(path, reason), "", result.out_of_memory};
   return result;
 }
 

@@ -55,6 +55,7 @@ struct WriteOptions {
 struct WriteResult {
   std::string error;
   std::string warning;
+  bool out_of_memory = false;  ///< The error is for lack of memory.
   bool ok() const { return error.empty(); }
 };
 

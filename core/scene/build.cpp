@@ -2,7 +2,9 @@
 // neither geometry (build_groups.h, build_geometry.h) nor light (build_lights.h).
 
 #include <algorithm>
+#include <new>
 
+#include "core/plugin/memory_limit.h"
 #include "core/scene/build_context.h"
 #include "core/scene/build_geometry.h"
 #include "core/scene/build_groups.h"
@@ -87,13 +89,20 @@ void prepare_camera(const BuildContext& context, bool quick, Scene& scene) {
 
 /// What touches lights is found by asking what was built, and needs another build only where something does.
 void build_accel(const BuildContext& context, Scene& scene) {
-  std::string problem = scene.accel->build();
-  if (problem.empty()) {
-    scene.any_touched = find_light_ends(context, scene.lights);
-    if (scene.any_touched) problem = scene.accel->watch_ends();
+  std::string problem;
+  try {
+    problem = scene.accel->build();
+    if (problem.empty()) {
+      scene.any_touched = find_light_ends(context, scene.lights);
+      if (scene.any_touched) problem = scene.accel->watch_ends();
+    }
+    if (problem.empty()) return;
+    context.diagnostics.error(context.description().world_begin, problem);
+  } catch (const std::bad_alloc&) {
+    context.diagnostics.add(limit_error(context.description().world_begin,
+                                        "not enough memory for the ray tracer's trees",
+                                        "fewer triangles or curves take less"));
   }
-  if (problem.empty()) return;
-  context.diagnostics.error(context.description().world_begin, problem);
   // Which mesh it was is not known.
   if (context.kept) context.kept->clear();
 }

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <new>
 
 #include "core/base/box.h"
+#include "core/plugin/memory_limit.h"
 #include "core/scene/bake.h"
 #include "core/scene/huge.h"
 
@@ -74,7 +76,16 @@ Groups read_groups(const BuildContext& context, std::vector<Bound<Shape>>& shape
     if (context.scene.plan.shape_live[i]) loaded.emplace_back().description = i;
   }
   context.for_each(loaded.size(), [&](size_t i, Diagnostics& reports) {
-    load_shape(context, shapes[loaded[i].description], loaded[i], reports);
+    Bound<Shape>& shape = shapes[loaded[i].description];
+    try {
+      load_shape(context, shape, loaded[i], reports);
+    } catch (const std::bad_alloc&) {
+      // What there is of it goes first, to have room for words.
+      loaded[i].mesh = {}, loaded[i].curves = {}, loaded[i].bounds = {};
+      const ShapeDescription& d = context.shape(loaded[i].description);
+      reports.add(limit_error(d.where, fmt::format("not enough memory for this {}", d.plugin)));
+      shape.plugin.reset();
+    }
   });
   Groups groups;
   groups.all.resize(1 + context.description().objects.size());

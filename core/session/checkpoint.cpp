@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/base/mapped_file.h"
 #include "core/image/atomic_file.h"
 #include "core/image/checksum.h"
-#include "core/base/mapped_file.h"
 #include "core/render/film_render.h"
 #include "core/session/files.h"
 

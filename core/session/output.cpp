@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <future>
 
+#include "core/plugin/memory_limit.h"
+
 namespace whit {
 namespace {
 
@@ -116,7 +118,8 @@ Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Re
   WriteResult written = write_image(path, image, options);
   Diagnostics said;
   if (!written.warning.empty()) said.warning({}, std::move(written.warning));
-  if (!written.ok()) said.file_error({}, std::move(written.error));
+  if (written.out_of_memory) said.add(limit_error({}, std::move(written.error)));
+  else if (!written.ok()) said.file_error({}, std::move(written.error));
   return said;
 }
 
@@ -159,7 +162,8 @@ WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
   // Compressing is most of it, and there is more than one core.
   std::future<Diagnostics> display;
   if (!plan.display_file.empty()) {
-    display = std::async(std::launch::async, [&] { return write_file(plan.display_file, plan, result, metadata); });
+    display = std::async(std::launch::async | std::launch::deferred,
+                         [&] { return write_file(plan.display_file, plan, result, metadata); });
   }
   out.said = write_file(plan.main_file, plan, result, metadata);
   if (display.valid()) out.said.append(display.get());

@@ -9,9 +9,11 @@
 namespace whit {
 namespace {
 
-class GoniometricLight final : public PointSource {
+class GoniometricLight final : public PointSource, public NeedsMemory {
  public:
   FileName mapname;
+
+  MemoryNeed memory_need(const MeshAttributes&) const override { return LightMap::need(mapname, WrapMode::LatLong); }
 
   bool prepare(const PrepareContext& ctx) override {
     return map_.prepare(ctx, mapname, WrapMode::LatLong) && place(ctx, {0, 0, 0});

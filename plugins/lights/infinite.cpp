@@ -9,7 +9,7 @@
 namespace whit {
 namespace {
 
-class InfiniteLight final : public EnvironmentLight {
+class InfiniteLight final : public EnvironmentLight, public NeedsMemory {
  public:
   RGB L{1.0f}, scale{1.0f};
   FileName map;
@@ -21,6 +21,8 @@ class InfiniteLight final : public EnvironmentLight {
     if (samples == 1) return {};
     return {{"nsamples", "\"samples\" goes before it"}};
   }
+
+  MemoryNeed memory_need(const MeshAttributes&) const override { return latlong_need(map.path, LatLongRule::Pbrt); }
 
   bool prepare(const PrepareContext& ctx) override {
     std::unique_ptr<const DirectionalRadiance> radiance;

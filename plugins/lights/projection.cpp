@@ -12,10 +12,12 @@
 namespace whit {
 namespace {
 
-class ProjectionLight final : public PointSource {
+class ProjectionLight final : public PointSource, public NeedsMemory {
  public:
   FileName mapname;
   float fov = 45;
+
+  MemoryNeed memory_need(const MeshAttributes&) const override { return LightMap::need(mapname, WrapMode::Repeat); }
 
   bool prepare(const PrepareContext& ctx) override {
     if (!map_.prepare(ctx, mapname, WrapMode::Repeat)) return false;

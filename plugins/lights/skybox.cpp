@@ -52,7 +52,7 @@ class GradientRadiance final : public DirectionalRadiance {
   float slope_;  ///< In [0, 1]: density is (1 + slope cos) / (4 pi).
 };
 
-class Skybox final : public EnvironmentLight {
+class Skybox final : public EnvironmentLight, public NeedsMemory {
  public:
   FileName map;
   RGB L{1.0f}, scale{1.0f};
@@ -65,6 +65,8 @@ class Skybox final : public EnvironmentLight {
     if (radius > 0) return {};
     return {{"center", "without a \"radius\" the sky is infinitely far away", "radius"}};
   }
+
+  MemoryNeed memory_need(const MeshAttributes&) const override { return latlong_need(map.path, LatLongRule::Exact); }
 
   bool prepare(const PrepareContext& ctx) override {
     std::unique_ptr<const DirectionalRadiance> radiance;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/base/quadratic.h"
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
@@ -76,7 +77,7 @@ Bezier turning_normals(const Vec3d& a, const Vec3d& b, const Vec3d& along) {
   return {a, a + axis.cross(a) * handle, b - axis.cross(b) * handle, b};
 }
 
-struct Curve final : CurveShape {
+struct Curve final : CurveShape, NeedsMemory {
   Point3List P;
   NormalList N;
   float width;
@@ -98,11 +99,16 @@ struct Curve final : CurveShape {
     check_normals(diagnostics, statement);
   }
 
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    if (P.size() == 0) return {};
+    return {
+        .segments = segments(), .pieces = uint64_t{1} << split_depth(), .ribbon = kind() == CurveData::Kind::Ribbon};
+  }
+
   bool build_curves(const PrepareContext&, CurveData& out) override {
     if (P.size() == 0) return true;
     out.kind = kind();
-    // 32 pieces bound any curve well; more only cost memory.
-    out.split_depth = std::clamp(splitdepth.value, 0, 5);
+    out.split_depth = split_depth();
     const size_t n = segments();
     for (size_t s = 0; s < n; ++s) {
       const Bezier b = segment(s);
@@ -124,6 +130,8 @@ struct Curve final : CurveShape {
     constexpr CurveData::Kind kKinds[] = {CurveData::Kind::Flat, CurveData::Kind::Ribbon, CurveData::Kind::Cylinder};
     return kKinds[type.index];
   }
+  /// 32 pieces bound any curve well; more only cost memory.
+  int split_depth() const { return std::clamp(splitdepth.value, 0, 5); }
   size_t segments() const {
     const size_t n = P.size() / 3, d = static_cast<size_t>(degree);
     return is_bspline() ? n - d : (n - 1) / d;

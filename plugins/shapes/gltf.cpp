@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "core/plugin/memory_need.h"
 #include "core/plugin/model_shape.h"
 #include "core/plugin/registry.h"
 
 namespace whit {
 namespace {
 
-struct GltfShape final : ModelShape {
+struct GltfShape final : ModelShape, NeedsMemory {
   FileName filename;
   std::string scene, node;
   int variant = -1;
@@ -25,6 +26,11 @@ struct GltfShape final : ModelShape {
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (!mesh && filename.empty()) diagnostics.error(statement, "gltf has no \"filename\"");
+  }
+
+  MemoryNeed memory_need(const MeshAttributes& attributes) const override {
+    const auto* source = dynamic_cast<const NeedsMemory*>(mesh.get());
+    return source ? source->memory_need(attributes) : MemoryNeed();
   }
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {

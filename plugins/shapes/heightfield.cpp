@@ -2,13 +2,14 @@
 
 #include <fmt/format.h>
 
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
 namespace whit {
 namespace {
 
-struct Heightfield final : MeshShape {
+struct Heightfield final : MeshShape, NeedsMemory {
   int nu, nv;
   FloatList Pz;
 
@@ -27,11 +28,17 @@ struct Heightfield final : MeshShape {
     }
   }
 
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    if (is_empty()) return {};
+    return {.vertices = Pz.size(), .triangles = 2 * cells(), .floats = 2};
+  }
+
   bool build_mesh(const PrepareContext&, MeshData& out) override {
     if (is_empty()) return true;
     const auto columns = static_cast<uint32_t>(nu), rows = static_cast<uint32_t>(nv);
     out.owned_positions.reserve(3 * Pz.size());
     out.uvs.reserve(2 * Pz.size());
+    out.indices.reserve(6 * cells());
     for (uint32_t y = 0; y < rows; ++y) {
       for (uint32_t x = 0; x < columns; ++x) {
         const double u = static_cast<double>(x) / (columns - 1), v = static_cast<double>(y) / (rows - 1);
@@ -50,6 +57,7 @@ struct Heightfield final : MeshShape {
   }
 
  private:
+  size_t cells() const { return static_cast<size_t>(nu - 1) * static_cast<size_t>(nv - 1); }
   /// True where the heights are as many as they should be, but make no cell.
   bool is_empty() const { return (nu < 2 || nv < 2) && Pz.size() == static_cast<size_t>(nu) * static_cast<size_t>(nv); }
 };

@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/base/quadratic.h"
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
@@ -41,7 +42,8 @@ struct SubdivisionMesh {
   std::vector<uint32_t> twin;    ///< The half-edge the other way in the neighbouring face, or kNone.
   std::vector<uint32_t> start;   ///< Of each vertex: a half-edge that starts there; kNone where no face uses it.
 
-  Ring ring(uint32_t v) const;
+  /// Fills in a ring that may have been another one: with memory of its own each vertex would ask for some.
+  void ring(uint32_t v, Ring& out) const;
   SubdivisionMesh refined() const;
   /// The vertices' places on the limit surface.
   std::vector<Vec3d> limit() const { return moved(1. / 5, limit_weight); }
@@ -74,31 +76,32 @@ size_t find_twins(SubdivisionMesh& mesh) {
   return rejected;
 }
 
-Ring SubdivisionMesh::ring(uint32_t v) const {
-  Ring out;
+void SubdivisionMesh::ring(uint32_t v, Ring& out) const {
+  out.p.clear();
+  out.boundary = false;
   uint32_t h = start[v];
   do {
     out.p.push_back(p[corner[next(h)]]);
     if (twin[h] == kNone) out.boundary = true;
     else h = next(twin[h]);
   } while (h != start[v] && !out.boundary);
-  if (!out.boundary) return out;
+  if (!out.boundary) return;
   // h is the clockwise end of the fan.
   out.p.assign(1, p[corner[next(h)]]);
   while (h != kNone) {
     out.p.push_back(p[corner[previous(h)]]);
     h = twin[previous(h)];
   }
-  return out;
 }
 
 /// Every vertex as a weighted mean of itself and its neighbours; on a boundary, of its neighbours there.
 template <class Weight>
 std::vector<Vec3d> SubdivisionMesh::moved(double boundary_weight, const Weight& interior_weight) const {
   std::vector<Vec3d> out(p);
+  Ring r;
   for (uint32_t v = 0; v < p.size(); ++v) {
     if (start[v] == kNone) continue;
-    const Ring r = ring(v);
+    ring(v, r);
     if (r.boundary) {
       out[v] = p[v] * (1 - 2 * boundary_weight) + (r.p.front() + r.p.back()) * boundary_weight;
       continue;
@@ -180,7 +183,7 @@ Vec3d limit_normal(const Vec3d& p, const Ring& ring) {
   return s.cross(t);
 }
 
-struct LoopSubdivision final : MeshShape {
+struct LoopSubdivision final : MeshShape, NeedsMemory {
   int levels, nlevels;
   Choice scheme;
   IntegerList indices;
@@ -199,6 +202,21 @@ struct LoopSubdivision final : MeshShape {
     }
   }
 
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    if (is_empty()) return {};
+    // As many edges as a closed surface has, or one in a piece. Each edge gets a vertex, and becomes two, with three more in
+    // each face, which becomes four.
+    uint64_t vertices = P.size() / 3, faces = indices.size() / 3, edges = std::max(faces * 3 / 2, vertices + faces);
+    for (int level = 0; level < level_count(); ++level) {
+      vertices += edges, edges = 2 * edges + 3 * faces, faces *= 4;
+    }
+    MemoryNeed need{.vertices = vertices, .triangles = faces, .floats = 3};
+    // Places, once more on the limit surface, and normals in double; three half-edges of each face know their twins, and
+    // each vertex one of them.
+    need.making = vertices * (2 * sizeof(Vec3d) + sizeof(uint32_t)) + faces * 3 * sizeof(uint32_t);
+    return need;
+  }
+
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {
     if (is_empty()) return true;
     SubdivisionMesh mesh = base_mesh(ctx);
@@ -206,10 +224,13 @@ struct LoopSubdivision final : MeshShape {
     mesh.p = mesh.limit();
     std::vector<Vec3d> normals(mesh.p.size(), Vec3d(0, 0, 0));
     double longest = std::numeric_limits<double>::min();
+    Ring ring;
     for (uint32_t v = 0; v < mesh.p.size(); ++v) {
-      if (mesh.start[v] != kNone) normals[v] = limit_normal(mesh.p[v], mesh.ring(v));
+      if (mesh.start[v] != kNone) mesh.ring(v, ring), normals[v] = limit_normal(mesh.p[v], ring);
       longest = std::max(longest, normals[v].length());
     }
+    out.owned_positions.reserve(3 * mesh.p.size());
+    out.normals.reserve(3 * mesh.p.size());
     // Not unit vectors: pbrt-v3 interpolates them as they are, the longer of two neighbours weighing more.
     for (uint32_t v = 0; v < mesh.p.size(); ++v) {
       for (int c = 0; c < 3; ++c) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
@@ -66,7 +67,7 @@ struct Axis {
   double knot(int i) const { return knots[static_cast<size_t>(i)]; }
 };
 
-struct Nurbs final : MeshShape {
+struct Nurbs final : MeshShape, NeedsMemory {
   int nu, nv, uorder, vorder;
   FloatList uknots, vknots, Pw;
   std::optional<float> u0, u1, v0, v1;
@@ -77,6 +78,10 @@ struct Nurbs final : MeshShape {
     const bool u_ok = check_axis(diagnostics, statement, 'u', nu, uorder, uknots, u0, u1, u_);
     const bool v_ok = check_axis(diagnostics, statement, 'v', nv, vorder, vknots, v0, v1, v_);
     if (u_ok && v_ok) check_points(diagnostics, statement);
+  }
+
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    return {.vertices = kDice * kDice, .triangles = 2 * (kDice - 1) * (kDice - 1), .floats = 5};
   }
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {

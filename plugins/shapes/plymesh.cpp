@@ -5,17 +5,26 @@
 
 #include "core/base/mapped_file.h"
 #include "core/base/ply.h"
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
 namespace whit {
 namespace {
 
-struct PlyMeshShape final : MeshShape {
+struct PlyMeshShape final : MeshShape, NeedsMemory {
   FileName filename;
 
   void check(Diagnostics& diagnostics, SourcePos statement) override {
     if (filename.empty()) diagnostics.error(statement, "plymesh has no \"filename\"");
+  }
+
+  MemoryNeed memory_need(const MeshAttributes& attributes) const override {
+    const MappedFile file(filename.path);
+    const PlyCounts counts = count_ply(file.bytes(), attributes);
+    MemoryNeed need{.vertices = counts.vertices, .triangles = counts.triangles, .floats = counts.floats};
+    need.making = file.bytes().size();
+    return need;
   }
 
   bool build_mesh(const PrepareContext& ctx, MeshData& out) override {

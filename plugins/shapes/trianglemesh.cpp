@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "core/plugin/shape.h"
 
@@ -28,7 +29,7 @@ namespace {
 
 std::vector<float> to_floats(std::span<const double> values) { return {values.begin(), values.end()}; }
 
-struct TriangleMesh final : MeshShape {
+struct TriangleMesh final : MeshShape, NeedsMemory {
   IntegerList indices;
   Point3List P;
   NormalList N;
@@ -44,6 +45,12 @@ struct TriangleMesh final : MeshShape {
     check_per_vertex(diagnostics, N, "N", "normals");
     check_per_vertex(diagnostics, S, "S", "tangents");
     if (surface_parameters().given) check_uvs(diagnostics, surface_parameters());
+  }
+
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    MemoryNeed need{.vertices = vertex_count(), .triangles = indices.size() / 3, .owns_vertices = false};
+    need.floats = (N.given ? 3 : 0) + (S.given ? 3 : 0) + (surface_parameters().given ? 2 : 0);
+    return need;
   }
 
   bool build_mesh(const PrepareContext&, MeshData& out) override {

@@ -8,9 +8,12 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <new>
 
 #include "core/base/fastmath.h"
 #include "core/image/image.h"
+#include "core/image/picture_need.h"
+#include "core/plugin/memory_limit.h"
 
 namespace whit {
 namespace {
@@ -22,6 +25,7 @@ double importance(const float* c) {
   return 0.212671 * part(0) + 0.715160 * part(1) + 0.072169 * part(2);
 }
 
+constexpr const char* kSmallerMap = "a smaller map takes less";
 constexpr int kBlock = 128;
 constexpr size_t kGrain = size_t{1} << 15;  ///< What a thread takes of many numbers.
 
@@ -72,6 +76,24 @@ inline Vec2f map_coordinates(const Vec3f& d, float width, float height) {
 
 }  // namespace
 
+namespace {
+
+bool is_resampled(int width, int height, LatLongRule rule) {
+  return rule == LatLongRule::Pbrt && !(is_power_of_two(width) && is_power_of_two(height));
+}
+
+/// Numbers of the map: of its cells, and of its texels for each channel.
+struct MapSize {
+  size_t texels, cells;
+  MapSize(int width, int height, LatLongRule rule) {
+    const bool larger = is_resampled(width, height, rule);
+    const auto side = [&](int n) { return larger ? std::bit_ceil(static_cast<size_t>(n)) : static_cast<size_t>(n); };
+    texels = side(width) * side(height), cells = (side(width) + 1) * (side(height) + 1);
+  }
+};
+
+}  // namespace
+
 LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) {
   build_radiance(std::move(texels), factor, rule, bad_numbers);
   build_bands();
@@ -80,8 +102,7 @@ LatLongMap::LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_
 
 void LatLongMap::build_radiance(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers) {
   bad_numbers = clear_bad_numbers(texels.values);
-  const bool resampled =
-      rule == LatLongRule::Pbrt && !(is_power_of_two(texels.width) && is_power_of_two(texels.height));
+  const bool resampled = is_resampled(texels.width, texels.height, rule);
   if (resampled) texels = resample_to_power_of_two(std::move(texels), WrapMode::LatLong);
   width_ = texels.width, height_ = texels.height;
   const size_t pixels = static_cast<size_t>(width_) * static_cast<size_t>(height_);
@@ -99,6 +120,17 @@ void LatLongMap::build_radiance(Texels texels, const RGB& factor, LatLongRule ru
       for (int c = 0; c < 3; ++c) texel[c] = clamp_to(texel[c] * factor[c], -kMost, kMost);
     }
   });
+}
+
+size_t LatLongMap::bytes(int width, int height, LatLongRule rule) {
+  const MapSize size(width, height, rule);
+  return sizeof(float) * (3 * size.texels + size.cells);
+}
+
+size_t LatLongMap::bytes_to_build(int width, int height, int channels, LatLongRule rule) {
+  const MapSize size(width, height, rule);
+  const size_t copy = is_resampled(width, height, rule) ? size.texels * static_cast<size_t>(channels) : 0;
+  return sizeof(float) * (copy + std::max(channels == 1 ? 3 * size.texels : 0, size.cells));
 }
 
 void LatLongMap::build_bands() {
@@ -225,6 +257,21 @@ void LatLongMap::sample(int n, const float* u, const float* v, const Vec3Lanes& 
   }
 }
 
+MemoryNeed latlong_need(const std::string& path, LatLongRule rule) {
+  const std::optional<ImageInfo> info = path.empty() ? std::nullopt : quick_header(path);
+  if (!info) return {};
+  const int channels = info->rgb_channels()[0] == info->rgb_channels()[1] ? 1 : 3;
+  MemoryNeed need;
+  need.light_map = LatLongMap::bytes(info->width, info->height, rule);
+  // The picture's numbers, which its texels may take the place of; of others there are both for a while.
+  const size_t pixels = sizeof(float) * static_cast<size_t>(info->width) * static_cast<size_t>(info->height);
+  const size_t texels = pixels * static_cast<size_t>(channels), picture = pixels * static_cast<size_t>(info->channels);
+  const size_t reading = picture + (info->channels == 3 ? 0 : texels);
+  const size_t all = std::max(reading, texels + LatLongMap::bytes_to_build(info->width, info->height, channels, rule));
+  need.making = all - std::min(all, static_cast<size_t>(need.light_map));
+  return need;
+}
+
 std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, const RGB& factor, LatLongRule rule,
                                                    const PrepareContext& ctx) {
   Texels texels;
@@ -233,7 +280,8 @@ std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, cons
     Result<Image> image = read_image(path);
     if (ctx.reading_pictures) *ctx.reading_pictures += watch.elapsed();
     if (!image.ok()) {
-      ctx.diagnostics->file_error(ctx.statement, image.error);
+      if (image.out_of_memory) ctx.diagnostics->add(limit_error(ctx.statement, image.error, kSmallerMap));
+      else ctx.diagnostics->file_error(ctx.statement, image.error);
       return nullptr;
     }
     // Numbers of texels, enlarged to powers of two, are counted in 32 bits.
@@ -247,7 +295,15 @@ std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, cons
     texels = take_texels(std::move(image.value));
   }  // the picture goes here: large maps are not held twice
   size_t bad_numbers = 0;
-  auto map = std::make_unique<const LatLongMap>(std::move(texels), factor, rule, bad_numbers);
+  std::unique_ptr<const LatLongMap> map;
+  try {
+    need_memory(LatLongMap::bytes_to_build(texels.width, texels.height, texels.channels, rule),
+                "what light is made of");
+    map = std::make_unique<const LatLongMap>(std::move(texels), factor, rule, bad_numbers);
+  } catch (const std::bad_alloc& e) {
+    ctx.diagnostics->add(limit_error(ctx.statement, path + ": " + e.what(), kSmallerMap));
+    return nullptr;
+  }
   if (bad_numbers > 0) {
     ctx.diagnostics->warning(ctx.statement,
                              path + ": " + std::to_string(bad_numbers) + " numbers are negative, infinite or NaN",

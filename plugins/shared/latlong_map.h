@@ -8,6 +8,7 @@
 
 #include "core/base/distribution.h"
 #include "core/image/texels.h"
+#include "core/plugin/memory_need.h"
 #include "plugins/shared/environment.h"
 
 namespace whit {
@@ -28,6 +29,12 @@ class LatLongMap final : public DirectionalRadiance {
   /// Radiances are the texels times `factor`. Numbers that are negative, infinite or NaN count as 0; `bad_numbers`
   /// returns how many there were.
   LatLongMap(Texels texels, const RGB& factor, LatLongRule rule, size_t& bad_numbers);
+
+  /// What a map takes that is made of a picture of so many pixels.
+  static size_t bytes(int width, int height, LatLongRule rule);
+
+  /// The most that making one takes beside the texels of a picture of so many pixels and 1 or 3 channels.
+  static size_t bytes_to_build(int width, int height, int channels, LatLongRule rule);
 
   void evaluate(int n, const Vec3Lanes& d, const RGBLanes& radiance, float* pdf) const override;
   void sample(int n, const float* u, const float* v, const Vec3Lanes& d) const override;
@@ -60,5 +67,8 @@ class LatLongMap final : public DirectionalRadiance {
 /// texels (warning).
 std::unique_ptr<const LatLongMap> read_latlong_map(const std::string& path, const RGB& factor, LatLongRule rule,
                                                    const PrepareContext& ctx);
+
+/// What read_latlong_map() will come to; nothing for "".
+MemoryNeed latlong_need(const std::string& path, LatLongRule rule);
 
 }  // namespace whit

@@ -4,9 +4,25 @@
 
 #include "core/base/fastmath.h"
 #include "core/image/image.h"
+#include "core/image/picture_need.h"
 #include "core/image/texture_store.h"
 
 namespace whit {
+namespace {
+
+TextureSpec spec_of(const FileName& file, WrapMode wrap) {
+  TextureSpec spec;
+  spec.path = file.path;
+  spec.flip = false;
+  spec.wrap = wrap;
+  return spec;
+}
+
+}  // namespace
+
+MemoryNeed LightMap::need(const FileName& file, WrapMode wrap) {
+  return file.empty() ? MemoryNeed() : texture_need(spec_of(file, wrap));
+}
 
 bool LightMap::prepare(const PrepareContext& ctx, const FileName& file, WrapMode wrap) {
   if (file.empty()) return true;
@@ -16,11 +32,7 @@ bool LightMap::prepare(const PrepareContext& ctx, const FileName& file, WrapMode
     return false;
   }
   aspect_ = static_cast<double>(info.value.width) / info.value.height;
-  TextureSpec spec;
-  spec.path = file.path;
-  spec.flip = false;
-  spec.wrap = wrap;
-  image_ = ctx.textures->add(spec, file.where);
+  image_ = ctx.textures->add(spec_of(file, wrap), file.where);
   return true;
 }
 

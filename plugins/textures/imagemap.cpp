@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/image/picture_need.h"
 #include "core/image/signature.h"
 #include "core/image/texture_store.h"
 #include "plugins/shared/texture_channels.h"
@@ -16,7 +17,7 @@ namespace {
 constexpr WrapMode kWraps[] = {WrapMode::Repeat, WrapMode::Black, WrapMode::Clamp, WrapMode::Mirror};
 
 template <class T>
-class ImageMap : public Texture2D<T> {
+class ImageMap : public Texture2D<T>, public NeedsMemory {
  public:
   FileName filename;
   Choice wrap, wrapu, wrapv;  // in the order of kWraps; the last two have "as wrap" first
@@ -71,19 +72,10 @@ class ImageMap : public Texture2D<T> {
     return info.ok();
   }
 
+  MemoryNeed memory_need(const MeshAttributes&) const override { return texture_need(spec()); }
+
   bool prepare(const PrepareContext& ctx) override {
-    TextureSpec spec;
-    spec.path = filename.path;
-    spec.bytes = bytes_;
-    spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;
-    spec.channel = static_cast<TextureChannel>(channel.index);
-    const auto along = [&](const Choice& axis) { return kWraps[axis.index > 0 ? axis.index - 1 : wrap.index]; };
-    spec.wrap = wrap_of(along(wrapu), along(wrapv));
-    spec.gamma = gamma;
-    spec.scale = scale;
-    spec.filter = kind_of_filter();
-    spec.max_anisotropy = maxanisotropy;
-    image_ = ctx.textures->add(spec, bytes_ ? ctx.statement : filename.where);
+    image_ = ctx.textures->add(spec(), bytes_ ? ctx.statement : filename.where);
     return Texture2D<T>::prepare(ctx);
   }
 
@@ -95,6 +87,21 @@ class ImageMap : public Texture2D<T> {
   }
 
  private:
+  TextureSpec spec() const {
+    TextureSpec spec;
+    spec.path = filename.path;
+    spec.bytes = bytes_;
+    spec.kind = kChannels<T> == 1 ? TextureKind::Float : TextureKind::Rgb;
+    spec.channel = static_cast<TextureChannel>(channel.index);
+    const auto along = [&](const Choice& axis) { return kWraps[axis.index > 0 ? axis.index - 1 : wrap.index]; };
+    spec.wrap = wrap_of(along(wrapu), along(wrapv));
+    spec.gamma = gamma;
+    spec.scale = scale;
+    spec.filter = kind_of_filter();
+    spec.max_anisotropy = maxanisotropy;
+    return spec;
+  }
+
   TextureFilter kind_of_filter() const {
     const auto chosen = static_cast<TextureFilter>(filter.index);
     return trilinear && chosen == TextureFilter::Ewa ? TextureFilter::Trilinear : chosen;

@@ -287,6 +287,35 @@ TEST(Ply, GarbageAfterAnyByteNeverCrashes) {
   }
 }
 
+TEST(Ply, CountsAreToldByTheHeaderAndTheEnd) {
+  const auto expect = [](const std::string& file, uint64_t vertices, uint64_t triangles, uint64_t floats) {
+    const PlyCounts counts = count_ply(file);
+    EXPECT_EQ(counts.vertices, vertices);
+    EXPECT_EQ(counts.triangles, triangles);
+    EXPECT_EQ(counts.floats, floats);
+  };
+  expect(binary_square<float, uint8_t, int32_t>(Order::Little, "float", "uchar", "int"), 4, 2, 0);
+  expect(binary_square<double, uint16_t, uint16_t>(Order::Big, "double", "ushort", "ushort"), 4, 2, 0);
+  const std::string points = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  expect(header("ascii", 4, kXyz, 2) + points + "3 0 1 2\n3 0 2 3\n", 4, 2, 0);
+  // Of a quad there are two. The last line tells, whatever blanks stand behind it.
+  expect(header("ascii", 4, kXyz, 1) + points + "4 0 1 2 3\n \n", 4, 2, 0);
+  const std::string more = std::string(kXyz) + "property float nx\nproperty float ny\nproperty float nz\n" +
+                           "property float u\nproperty float v\n";
+  std::string quads = header("binary_little_endian", 4, more, 3);
+  for (int i = 0; i < 4 * 8; ++i) quads += bytes(Order::Little, 0.5f);
+  for (int i = 0; i < 3; ++i) {
+    quads += '\4';
+    for (int k = 0; k < 4; ++k) quads += bytes(Order::Little, k);
+  }
+  expect(quads, 4, 6, 5);
+  // What a file cannot hold is not told, nor anything of files that are none.
+  EXPECT_LT(count_ply(header("ascii", 2000000000, kXyz, 2000000000)).vertices, 1000u);
+  expect("no ply at all", 0, 0, 0);
+  expect(header("ascii", 0, kXyz, 0), 0, 0, 0);
+  for (size_t n = 0; n < quads.size(); ++n) EXPECT_LE(count_ply(quads.substr(0, n)).triangles, 6u);
+}
+
 TEST(Ply, AttributesAreReadWhereAskedFor) {
   const std::string properties =
       std::string(kXyz) +

@@ -68,7 +68,8 @@ class Stats(unittest.TestCase):
         elapsed = time.monotonic() - start
         self.assertEqual((out, err), ("", ""))
         figures = json.loads(self.read("s.json"))
-        self.assertEqual(list(figures), ["seconds", "cpu_seconds", "start", "rays", "clear_shadow_rays", "textures", "samples", "memory_bytes", "invalid_samples",
+        self.assertEqual(list(figures), ["seconds", "cpu_seconds", "start", "rays", "clear_shadow_rays", "textures", "samples",
+                                         "memory_bytes", "memory_peak_bytes", "memory_estimate_bytes", "invalid_samples",
                                          "settings", "seed"])
         wall, cpu = figures["seconds"], figures["cpu_seconds"]
         self.assertEqual((list(wall), list(cpu)), (STEPS, STEPS))

@@ -14,10 +14,11 @@ namespace {
 using whit::fuzz::require;
 
 struct World {
-  whit::ParsedFile file = whit::read_scene_text(
-      "fuzz",
-      "Film \"image\" \"integer xresolution\" [8] \"integer yresolution\" [8] Sampler \"sobol\" \"integer pixelsamples\" 4\n"
-      "WorldBegin LightSource \"infinite\" Translate 0 0 5 Shape \"sphere\" WorldEnd\n");
+  whit::ParsedFile file =
+      whit::read_scene_text("fuzz",
+                            "Film \"image\" \"integer xresolution\" [8] \"integer yresolution\" [8] Sampler \"sobol\" "
+                            "\"integer pixelsamples\" 4\n"
+                            "WorldBegin LightSource \"infinite\" Translate 0 0 5 Shape \"sphere\" WorldEnd\n");
   whit::BuiltWorld built = whit::build_world(whit::plan_world(file.worlds.at(0), *file.sources));
 };
 

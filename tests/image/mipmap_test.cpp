@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/image/picture_rows.h"
+#include "core/image/scratch_file.h"
 
 namespace whit {
 namespace {
@@ -356,18 +357,21 @@ class Rows : public PictureRows {
 };
 
 TEST(MipMap, building_takes_no_more_than_announced) {
-  // What the reader says, the levels from `first` on, and rows of the picture: with sides that are powers of two a few, of
-  // others all, as the file has them.
+  // What the reader says, the levels from `first` on, and a few rows of the picture; where sides are no powers of two some
+  // more, 24, as floats.
   for (const int side : {64, 50})
     for (const SampleFormat format : {SampleFormat::Float, SampleFormat::UInt8})
       for (const int first : {0, 2}) {
         Rows rows(picture(side, side, 3, format));
-        const size_t announced = MipMap::bytes_to_build(rows, {}, first),
-                     number = format == SampleFormat::Float ? 4 : 1;
+        const size_t announced = MipMap::bytes_to_build(rows, {}, first);
         const size_t levels = MipMap(rows, {}, first).bytes(), some = 4 * 3 * 64 * sizeof(float);
-        const size_t all = side == 50 ? 50 * 50 * 3 * number : 0;
-        EXPECT_GE(announced, 1000 + levels + some + all);
-        EXPECT_LE(announced, 1000 + levels + 4 * some + all);
+        const size_t more = side == 50 ? 24 * 3 * 50 * sizeof(float) : 0;
+        EXPECT_GE(announced, 1000 + levels + some + more);
+        EXPECT_LE(announced, 1000 + levels + 4 * some + more);
+        // In a file each level begins at a multiple of 64 bytes.
+        const size_t in_file = MipMap::bytes_of_levels(rows.info, {}, first);
+        EXPECT_GE(in_file, levels);
+        EXPECT_LE(in_file, levels + 7 * 63);
       }
 }
 
@@ -403,6 +407,47 @@ TEST(MipMap, levels_from_the_first_on_are_those_of_the_whole) {
             }
           }
         }
+}
+
+TEST(MipMap, enlarging_rows_as_they_come_is_enlarging_the_whole) {
+  // 16 rows are kept, and of more the last 8; what a texture that repeats needs of its last rows at its first comes last.
+  const Points points(40);
+  for (const int height : {1, 2, 3, 7, 15, 16, 17, 18, 23, 31, 32, 33, 47, 63, 100, 255, 257})
+    for (const SampleFormat format : {SampleFormat::UInt8, SampleFormat::Float})
+      for (const bool flip : {false, true})
+        for (const bool bottom_first : {false, true})
+          for (const WrapMode wrap : kWraps) {
+            const Image image = picture(5, height, 3, format);
+            const Texels enlarged = resample_to_power_of_two(make_texels(image, false, false, 1, flip), wrap);
+            Image as_enlarged = image;
+            as_enlarged.format = SampleFormat::Float;
+            as_enlarged.width = enlarged.width, as_enlarged.height = enlarged.height;
+            as_enlarged.pixels = enlarged.values;
+            const MipMap whole(as_enlarged, {.wrap = wrap, .flip = false});
+            Rows rows(image, bottom_first);
+            const MipMap map(rows, {.wrap = wrap, .flip = flip, .floats = true});
+            ASSERT_EQ(map.height(), whole.height());
+            EXPECT_EQ(look(map, points.view(), {}), look(whole, points.view(), {})) << height;
+            EXPECT_EQ(look(map, points.view(), {TextureFilter::Point}),
+                      look(whole, points.view(), {TextureFilter::Point}))
+                << height;
+          }
+}
+
+TEST(MipMap, levels_in_a_file_are_those_in_memory) {
+  // 5 MiB of level 0 alone, so that memory is given back in between.
+  const Image image = picture(700, 600, 3, SampleFormat::Float);
+  ScratchFile file;
+  const Points points(200);
+  for (const int first : {0, 2}) {
+    Rows a(image), b(image);
+    const MipMap whole(a, {}, first);
+    const MipMap map(b, {}, first, file.room(MipMap::bytes_of_levels(image, {}, first)));
+    EXPECT_TRUE(map.is_in_file());
+    EXPECT_EQ(map.bytes(), whole.bytes());
+    map.give_back();
+    EXPECT_EQ(look(map, points.view(), {}), look(whole, points.view(), {}));
+  }
 }
 
 TEST(MipMap, what_halves_cannot_hold_is_said_and_floats_hold_it) {

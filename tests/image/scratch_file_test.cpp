@@ -39,6 +39,20 @@ TEST(ScratchFile, pieces_come_back_at_their_places_as_often_as_they_are_given_ba
     }
 }
 
+TEST(ScratchFile, room_keeps_what_is_written_to_it_also_when_memory_is_given_back) {
+  ScratchFile file;
+  const auto room = file.room(1000000), other = file.room(5000);
+  ASSERT_NE(room, nullptr);
+  const auto some = bytes(1000000, 3), few = bytes(5000, 4);
+  std::copy(some.begin(), some.end(), room->as<std::byte>());
+  room->give_back();
+  std::copy(few.begin(), few.end(), other->as<std::byte>());
+  EXPECT_TRUE(std::equal(some.begin(), some.end(), room->as<std::byte>()));
+  EXPECT_TRUE(std::equal(few.begin(), few.end(), other->as<std::byte>()));
+  // No disk has room for an exbibyte.
+  EXPECT_EQ(file.room(size_t{1} << 60), nullptr);
+}
+
 TEST(ScratchFile, without_a_folder_there_is_none) {
   const char* const old = std::getenv("TMPDIR");
   const std::string before = old ? old : "";
@@ -47,6 +61,7 @@ TEST(ScratchFile, without_a_folder_there_is_none) {
   const auto some = bytes(100, 1);
   EXPECT_EQ(file.write({some}), nullptr);
   EXPECT_EQ(file.write({some}), nullptr);
+  EXPECT_EQ(file.room(100), nullptr);
   if (old) setenv("TMPDIR", before.c_str(), 1);
   else unsetenv("TMPDIR");
 }

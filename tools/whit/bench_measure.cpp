@@ -113,7 +113,7 @@ std::optional<SceneFigures> measure_scene(const std::string& name, const ParsedF
   out.parse_mb_per_s = static_cast<double>(file.bytes) / 1e6 / std::max(1e-9, file.elapsed.wall);
   out.triangles = static_cast<int64_t>(scene.triangle_count());
   out.build_mtris_per_s = static_cast<double>(out.triangles) / 1e6 / built.elapsed.wall;
-  out.peak_memory = peak_memory();
+  out.peak_memory = static_cast<double>(peak_memory());
   return out;
 }
 

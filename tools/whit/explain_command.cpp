@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <map>
 
+#include "core/image/write.h"
+#include "core/plugin/memory_limit.h"
 #include "core/scene/left_out.h"
+#include "core/session/memory.h"
 #include "tools/whit/effect_flags.h"
 #include "tools/whit/json.h"
 #include "tools/whit/load.h"
@@ -103,6 +106,32 @@ void print_world(const PlannedWorld& world, const Sources& sources) {
   for (const Ignored& i : world.plan.ignored) fmt::print("  {} at {}\n", printable(i.what), sources.location(i.where));
 }
 
+/// As `whit render` without flags would take it.
+MemoryPlan memory_of(const PlannedWorld& world) {
+  MemoryRequest request;
+  const Film& film = *world.bound.film.plugin;
+  const StringList& aovs = film.aovs();
+  request.film.aovs.assign(aovs.values.begin(), aovs.values.end());
+  request.film.linear = film.file_name().empty() || is_linear_format(film.file_name());
+  return plan_memory(world, request);
+}
+
+void print_memory(const PlannedWorld& world, const Sources& sources) {
+  const MemoryPlan memory = memory_of(world);
+  fmt::print("memory\n");
+  for (size_t u = 0; u < kMemoryUses; ++u) {
+    const auto use = static_cast<MemoryUse>(u);
+    if (memory.of(use) < 1024) continue;
+    const MemoryPart& largest = memory.largest(use);
+    fmt::print("  {:<24}{:>10}{}\n", memory_use_text(use), bytes_text(memory.of(use)),
+               largest.where.known()
+                   ? fmt::format("   {} at {}", printable(largest.what), sources.location(largest.where))
+                   : "");
+  }
+  fmt::print("  {:<24}{:>10}   while {}; of {} at most (--max-memory)\n", "in all", bytes_text(memory.total()),
+             memory_step_text(memory.step()), bytes_text(static_cast<double>(memory_limit())));
+}
+
 // ---- For machines ----
 
 Json describe_use(Effect e, const EffectPlan& plan, const Sources& sources) {
@@ -144,9 +173,34 @@ Json describe(const PlannedWorld& p, const Sources& sources) {
   return Json::Object{{"effects", effects}, {"left_out", left_out}, {"not_simulated", not_simulated}};
 }
 
-void print_json(const std::vector<PlannedWorld>& worlds, const Sources& sources) {
+Json describe_memory(const PlannedWorld& world, const Sources& sources) {
+  const MemoryPlan memory = memory_of(world);
+  Json::Object uses, steps;
+  for (size_t u = 0; u < kMemoryUses; ++u) {
+    const auto use = static_cast<MemoryUse>(u);
+    const MemoryPart& largest = memory.largest(use);
+    Json::Object of{{"bytes", static_cast<int64_t>(memory.of(use))}};
+    if (largest.where.known())
+      of.emplace_back("largest", Json::Object{{"what", largest.what}, {"where", sources.location(largest.where)}});
+    uses.emplace_back(memory_use_key(use), of);
+  }
+  for (size_t s = 0; s < kMemorySteps; ++s) {
+    const auto step = static_cast<MemoryStep>(s);
+    steps.emplace_back(memory_step_key(step), static_cast<int64_t>(memory.total(step)));
+  }
+  return Json::Object{{"estimate_bytes", static_cast<int64_t>(memory.total())},
+                      {"limit_bytes", static_cast<int64_t>(memory_limit())},
+                      {"step", memory_step_key(memory.step())},
+                      {"uses", uses},
+                      {"steps", steps}};
+}
+
+void print_json(const std::vector<PlannedWorld>& worlds, const Sources& sources, bool memory) {
   Json::Array described;
-  for (const PlannedWorld& world : worlds) described.push_back(describe(world, sources));
+  for (const PlannedWorld& world : worlds) {
+    described.push_back(memory ? Json(Json::Object{{"memory", describe_memory(world, sources)}})
+                               : describe(world, sources));
+  }
   fmt::print("{}\n", to_text(Json::Object{{"worlds", described}}));
 }
 
@@ -154,7 +208,7 @@ void print_json(const std::vector<PlannedWorld>& worlds, const Sources& sources)
 
 int explain_command(const Arguments& args) {
   std::string path;
-  bool as_json = false;
+  bool as_json = false, memory = false;
   EffectFlags flags;
   CommandLine command{"whit explain",
                       "Shows the effect plan of a scene: what is simulated, what called for it, and what is left out.",
@@ -163,6 +217,7 @@ int explain_command(const Arguments& args) {
   add_effect_flags(command, flags);
   add_model_flags(command, model);
   command.flags.push_back({"--json", &as_json, "Print the plan as JSON"});
+  command.flags.push_back({"--memory", &memory, "What rendering it is going to take of memory, and what takes it"});
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
   if (const std::string problem = usage_problem(flags); !problem.empty()) {
@@ -188,12 +243,13 @@ int explain_command(const Arguments& args) {
   print_diagnostics(sources, all);
   if (all.has_errors()) return exit_code(all);
   if (as_json) {
-    print_json(worlds, sources);
+    print_json(worlds, sources, memory);
     return kDone;
   }
   for (size_t i = 0; i < worlds.size(); ++i) {
     if (worlds.size() > 1) fmt::print("{}world {} of {}\n", i > 0 ? "\n" : "", i + 1, worlds.size());
-    print_world(worlds[i], sources);
+    if (memory) print_memory(worlds[i], sources);
+    else print_world(worlds[i], sources);
   }
   return kDone;
 }

@@ -1,5 +1,6 @@
 #include "tools/whit/quantities.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <initializer_list>
@@ -32,6 +33,25 @@ double quantity(const std::string& text, std::initializer_list<UnitOf> units) {
 
 double duration_of(const std::string& text) {
   return quantity(text, {{""}, {"s"}, {"ms", 1, 1000}, {"min", 60}, {"h", 3600}});
+}
+
+uint64_t size_of(const std::string& text) {
+  constexpr double kKiB = 1024, kMiB = 1024 * kKiB, kGiB = 1024 * kMiB, kTiB = 1024 * kGiB, kMost = 0x1p62;
+  const double bytes = quantity(text, {{""},
+                                       {"B"},
+                                       {"K", kKiB},
+                                       {"KB", kKiB},
+                                       {"KiB", kKiB},
+                                       {"M", kMiB},
+                                       {"MB", kMiB},
+                                       {"MiB", kMiB},
+                                       {"G", kGiB},
+                                       {"GB", kGiB},
+                                       {"GiB", kGiB},
+                                       {"T", kTiB},
+                                       {"TB", kTiB},
+                                       {"TiB", kTiB}});
+  return static_cast<uint64_t>(std::min(bytes, kMost));
 }
 
 double share_of(const std::string& text) { return quantity(text, {{""}, {"%", 1, 100}}); }

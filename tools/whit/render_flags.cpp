@@ -59,7 +59,7 @@ std::string take_stats_file(Arguments& args, std::string& file) {
 /// stopped in between.
 const std::vector<std::string> kBesideWithValue{
     "--outfile",     "-o",  "--display",    "--nthreads", "--json",   "--display-server", "--logdir",
-    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume", "--allow"};
+    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume", "--allow",          "--max-memory"};
 const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose", "--sandbox"};
 /// Of the others, those that samples do not depend on: how they become a picture, how many are added, and how long that
 /// may take.
@@ -175,6 +175,8 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
        &s.texture_memory,
        "MiB of decoded textures at most; what is more goes to a file in $TMPDIR or /var/tmp",
        {.least = 1, .most = 1e9}},
+      {"--max-memory", &s.max_memory,
+       "Memory at most: 512M, 1G; what takes more is refused before (default: 90 % of what the machine has)"},
       {"--quick", &s.quick, "A quarter of the resolution each way, one sample per pixel"},
       {"--quiet", &s.quiet, "No progress and no summary; problems are still reported"},
       {"--strict", &s.strict, "Warnings are errors"},
@@ -231,6 +233,8 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.output.outfile.empty() && s.scenes.size() > 1) {
     return "--outfile with several scenes would write them over each other";
   }
+  if (!s.max_memory.empty() && size_of(s.max_memory) == 0)
+    return fmt::format("--max-memory: \"{}\" is no size above 0; write 512M, 1G or bytes", s.max_memory);
   if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
     return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
   }

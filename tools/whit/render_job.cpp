@@ -9,15 +9,18 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <set>
 #include <string>
 #include <tuple>
 
+#include "core/plugin/memory_limit.h"
 #include "core/render/debug_sample.h"
 #include "core/render/film_render.h"
 #include "core/scene/problems.h"
 #include "core/session/checkpoint.h"
+#include "core/session/memory.h"
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/quantities.h"
@@ -33,12 +36,15 @@ namespace {
 /// One scene file on its way to pictures.
 class RenderJob {
  public:
-  RenderJob(const RenderSettings& settings, std::string path, const BeforeScene& before, RenderStats& stats)
+  /// `step` says what is being done, for whoever needs to know when it fails.
+  RenderJob(const RenderSettings& settings, std::string path, const BeforeScene& before, RenderStats& stats,
+            const char*& step)
       : settings_(settings),
         path_(std::move(path)),
         stats_(stats),
+        step_(step),
         file_(read_scene(path_, read_options(settings.model))),
-        parsed_memory_(resident_memory()) {
+        parsed_memory_(static_cast<double>(resident_memory())) {
     times_.program = before.program, times_.flags = before.flags;
   }
 
@@ -119,6 +125,13 @@ class RenderJob {
     return kDone;
   }
 
+  /// Says what a limit forbids, which --keep-going does not go past.
+  int report_limit(const Diagnostics& said) const {
+    print_diagnostics(sources_, said);
+    log(said);
+    return exit_code(said);
+  }
+
   void log(const Diagnostics& d) const {
     if (settings_.log_dir.empty()) return;
     std::ofstream out(settings_.log_dir + "/whit.log", std::ios::app);
@@ -126,6 +139,7 @@ class RenderJob {
   }
 
   int picture_of(const SceneDescription& world) {
+    step_ = "planning the scene";
     PlannedWorld planned = plan_world(world, sources_, plan_options(settings_.effects));
     // What is wrong explains what is surprising.
     if (!planned.said.has_errors()) planned.said.append(find_surprises(world, planned.plan));
@@ -144,8 +158,12 @@ class RenderJob {
       if (name.empty() || written_.insert(name).second) continue;
       say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
     }
-    BuiltWorld built =
-        build_world(std::move(planned), build_options(), static_cast<size_t>(settings_.texture_memory * 1024 * 1024));
+    MemoryPlan memory = plan_memory(planned, memory_request(*planned.bound.film.plugin, output));
+    memory_estimate_ = memory.total();
+    fit_textures(memory, memory_limit());
+    if (int code = report_limit(memory_problem(memory, memory_limit())); code != kDone) return code;
+    step_ = "building the scene";
+    BuiltWorld built = build_world(std::move(planned), build_options(), static_cast<size_t>(memory.texture_cap()));
     times_.build = built.elapsed;
     if (int code = report(built.said); code != kDone) return code;
     if (!built.scene) return kSceneError;
@@ -190,6 +208,20 @@ class RenderJob {
     return request;
   }
 
+  MemoryRequest memory_request(const Film& of, const OutputPlan& output) const {
+    MemoryRequest request;
+    request.texture_bytes = static_cast<size_t>(settings_.texture_memory * 1024 * 1024);
+    FilmNeed& film = request.film;
+    film.threads = settings_.threads;
+    film.crop_given = find_crop(of.resolution(), film.crop);
+    film.quick = settings_.quick;
+    film.aovs = output.aovs;
+    film.blocks = settings_.target.any(), film.adaptive = !settings_.target.error.empty();
+    film.linear = is_linear_format(output.main_file);
+    film.display = !film.linear || !output.display_file.empty();
+    return request;
+  }
+
   BuildOptions build_options() const {
     BuildOptions o;
     o.samples_per_pixel = settings_.spp;
@@ -203,6 +235,7 @@ class RenderJob {
 
   int trace_and_write(BuiltWorld& built, const OutputPlan& output) {
     const StopSignals stop;
+    step_ = "rendering";
     DisplayServer viewer;
     const Stopwatch connecting;
     RenderOptions options = render_options(built, output.aovs, viewer);
@@ -220,7 +253,8 @@ class RenderJob {
     const CheckpointFlags& flags = settings_.checkpoint;
     if (!flags.any()) return kDone;
     if (flags.more_samples() > 0 && !scene.sampler().extends()) {
-      say("whit: --samples: those of this scene's sampler cannot go on beyond their number, those of sobol and random can");
+      say("whit: --samples: those of this scene's sampler cannot go on beyond their number, those of sobol and random "
+          "can");
       return kUsage;
     }
     RenderIdentity identity = identity_of(path_, file_);
@@ -276,6 +310,7 @@ class RenderJob {
       return kFileError;
     }
     if (checkpoint_) warn_of_checkpoint();
+    step_ = "writing pictures";
     const WrittenOutput written = write_output(output, result, metadata(result));
     times_.write = written.elapsed;
     if (int code = report_output(written.said); code != kDone) {
@@ -287,7 +322,8 @@ class RenderJob {
       return code;
     }
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
-    const RenderOutcome outcome{*built.scene, result, output, *built.textures, times_, unread_.size(), parsed_memory_};
+    const RenderOutcome outcome{*built.scene, result,         output,         *built.textures,
+                                times_,       unread_.size(), parsed_memory_, memory_estimate_};
     stats_.add(settings_, path_, outcome);
     if (settings_.quiet) return kDone;
     summarise(outcome, settings_.stats);
@@ -312,23 +348,23 @@ class RenderJob {
                     n == 1 ? "" : "the first: ", first.message, where));
   }
 
+  /// The part of a picture of that size that the flags ask for; false where they do not.
+  bool find_crop(Vec2i size, double (&crop)[4]) const {
+    if (!settings_.crop.empty()) std::copy(settings_.crop.begin(), settings_.crop.end(), crop);
+    for (int axis = 0; axis < 2 && !settings_.pixel.empty(); ++axis) {
+      const double n = axis == 0 ? size.x : size.y, p = settings_.pixel[static_cast<size_t>(axis)];
+      crop[2 * axis] = (p - 0.5) / n, crop[2 * axis + 1] = (p + 0.5) / n;
+    }
+    return !settings_.crop.empty() || !settings_.pixel.empty();
+  }
+
   RenderOptions render_options(const BuiltWorld& built, const std::vector<std::string>& aovs,
                                DisplayServer& viewer) const {
     RenderOptions options;
     options.aovs = {aovs, [this](SourcePos where) { return place_in_scene(where); }};
     options.threads = settings_.threads;
     const Vec2i size = built.scene->camera().film.resolution;
-    if (!settings_.crop.empty()) {
-      options.crop_given = true;
-      std::copy(settings_.crop.begin(), settings_.crop.end(), options.crop);
-    }
-    if (!settings_.pixel.empty()) {
-      options.crop_given = true;
-      for (int axis = 0; axis < 2; ++axis) {
-        const double n = axis == 0 ? size.x : size.y, p = settings_.pixel[static_cast<size_t>(axis)];
-        options.crop[2 * axis] = (p - 0.5) / n, options.crop[2 * axis + 1] = (p + 0.5) / n;
-      }
-    }
+    options.crop_given = find_crop(size, options.crop);
     if (!settings_.display_server.empty()) show_in(viewer, size, options);
     return options;
   }
@@ -370,9 +406,11 @@ class RenderJob {
   const RenderSettings& settings_;
   const std::string path_;
   RenderStats& stats_;
+  const char*& step_;
   ParsedFile file_;
   const Sources& sources_ = *file_.sources;
   const double parsed_memory_;  ///< Resident after parsing, in bytes.
+  double memory_estimate_ = 0;  ///< Of the world at hand, in bytes.
   StepTimes times_;
   std::unique_ptr<Checkpoint> checkpoint_;
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
@@ -386,7 +424,14 @@ class RenderJob {
 
 int render_file(const RenderSettings& settings, const std::string& path, const BeforeScene& before,
                 RenderStats& stats) {
-  return RenderJob(settings, path, before, stats).run();
+  const char* step = "reading the scene";
+  try {
+    return RenderJob(settings, path, before, stats, step).run();
+  } catch (const std::bad_alloc& e) {
+    const auto* words = dynamic_cast<const OutOfMemory*>(&e);
+    say(fmt::format("whit: {}: not enough memory while {}{}{}", path, step, words ? ": " : "", words ? e.what() : ""));
+    return kLimit;
+  }
 }
 
 }  // namespace whit

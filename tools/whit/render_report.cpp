@@ -106,7 +106,7 @@ void report_invalid(const RenderStatistics& s) {
 }
 
 void summarise(const RenderOutcome& outcome, bool with_statistics) {
-  const auto& [scene, r, output, textures, times, unread_files, parsed_memory] = outcome;
+  const auto& [scene, r, output, textures, times, unread_files, parsed_memory, estimate] = outcome;
   const RenderStatistics& s = r.statistics;
   say(fmt::format("start {}, parse {}, plan {}, build {}, render {}, write {} on {} thread{}.",
                   duration_text(times.program.wall + times.flags.wall + times.output.wall),
@@ -125,8 +125,8 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
   const std::string rounding = scene.sampler().rounding();
   say(fmt::format("{:.5g} samples per pixel{}, {} triangles, peak memory {}, invalid samples {}.", r.samples_per_pixel,
                   rounding.empty() ? "" : " (" + rounding + ")",
-                  count_text(static_cast<double>(scene.triangle_count())), bytes_text(peak_memory()),
-                  s.invalid_samples));
+                  count_text(static_cast<double>(scene.triangle_count())),
+                  bytes_text(static_cast<double>(peak_memory())), s.invalid_samples));
   say_lights(scene);
   if (const size_t n = unread_files; n > 0)
     say(fmt::format("{} file{} of objects that are never placed {} not read (whit explain lists {}).", n,

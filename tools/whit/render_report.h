@@ -34,8 +34,9 @@ struct RenderOutcome {
   const OutputPlan& output;
   const TextureStore& textures;
   StepTimes times;
-  size_t unread_files = 0;   ///< Files of objects that this world never places.
-  double parsed_memory = 0;  ///< Resident after parsing, in bytes.
+  size_t unread_files = 0;     ///< Files of objects that this world never places.
+  double parsed_memory = 0;    ///< Resident after parsing, in bytes.
+  double memory_estimate = 0;  ///< At most in all, as it was told before (core/session/memory.h).
 };
 
 /// What StepTimes::ready consists of, in order; what is missing in the sum are messages.

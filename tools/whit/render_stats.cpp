@@ -113,6 +113,8 @@ void RenderStats::add(const RenderSettings& settings, const std::string& scene, 
                                    {"textures", textures(outcome.textures.statistics())},
                                    {"samples", s.camera_samples},
                                    {"memory_bytes", static_cast<int64_t>(peak_memory())},
+                                   {"memory_peak_bytes", static_cast<int64_t>(peak_memory())},
+                                   {"memory_estimate_bytes", static_cast<int64_t>(outcome.memory_estimate)},
                                    {"invalid_samples", s.invalid_samples},
                                    {"settings", settings_of(settings, scene, outcome)},
                                    {"seed", settings.seed}});

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/ioctl.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -75,7 +74,8 @@ int exit_code(const Diagnostics& diagnostics) {
   for (const Diagnostic& d : diagnostics.all()) {
     if (d.severity != Severity::Error) continue;
     if (d.error_class == ErrorClass::Scene) return kSceneError;
-    if (d.error_class == ErrorClass::File) code = kFileError;
+    if (d.name == kLimitHit) code = kLimit;
+    else if (d.error_class == ErrorClass::File && code != kLimit) code = kFileError;
     if (d.error_class == ErrorClass::Usage && code == 0) code = kUsage;
   }
   return code;
@@ -141,31 +141,12 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02d} min", s / 3600, s / 60 % 60);
 }
 
-std::string bytes_text(double bytes) {
-  if (bytes < 1024.0 * 1024) return fmt::format("{:.0f} KiB", bytes / 1024);
-  if (bytes < 10 * 1024.0 * 1024 * 1024) return fmt::format("{:.0f} MiB", bytes / (1024 * 1024));
-  return fmt::format("{:.1f} GiB", bytes / (1024.0 * 1024 * 1024));
-}
-
 std::string count_text(double count) {
   if (count < 1e4) return fmt::format("{:.0f}", count);
   if (count < 1e6) return fmt::format("{:.1f} k", count / 1e3);
   if (count < 1e9) return fmt::format("{:.2f} M", count / 1e6);
   return fmt::format("{:.2f} G", count / 1e9);
 }
-
-namespace {
-
-/// A line of /proc/self/status, in bytes; 0 where there is none.
-double memory_status(const std::string& key) {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind(key, 0) == 0) return std::stod(line.substr(key.size())) * 1024;
-  }
-  return 0;
-}
-
-}  // namespace
 
 Elapsed process_age() {
   const double cpu = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
@@ -182,16 +163,6 @@ Elapsed process_age() {
   const double most =
       static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - tick * std::stod(began);
   return {std::clamp(cpu, std::max(most - tick, 0.0), std::max(most, tick)), cpu};
-}
-
-double resident_memory() { return memory_status("VmRSS:"); }
-
-double peak_memory() {
-  // Not getrusage() where this exists: that begins with what the parent had when it started the program.
-  if (const double peak = memory_status("VmHWM:"); peak > 0) return peak;
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace whit

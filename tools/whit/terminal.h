@@ -6,6 +6,7 @@
 
 #include "core/base/diagnostics.h"
 #include "core/base/stopwatch.h"
+#include "core/plugin/memory_limit.h"
 #include "parser/source.h"
 
 namespace whit {
@@ -53,14 +54,8 @@ class Progress {
 
 /// "12.3 s", "4 min 05 s".
 std::string duration_text(double seconds);
-/// "812 MiB".
-std::string bytes_text(double bytes);
 /// "13.5 M".
 std::string count_text(double count);
-
-/// The resident size of this process in bytes, 0 where it is not known, and the largest so far.
-double resident_memory();
-double peak_memory();
 
 /// What this process has taken so far: loading the program, if asked first of all. The clock time is right to a hundredth
 /// of a second, for as often the system's clock of processes ticks; within that it is the processor time.

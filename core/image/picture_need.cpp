@@ -1,0 +1,97 @@
+#include "core/image/picture_need.h"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfTestFile.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <filesystem>
+
+#include "core/image/decode.h"
+#include "core/image/mipmap.h"
+#include "core/image/signature.h"
+
+namespace whit {
+namespace {
+
+/// Bytes of a file that nobody but OpenImageIO reads, from which on it may hold a picture that matters.
+constexpr uint64_t kLeastOfOthers = uint64_t{256} << 10;
+
+/// What its header says, without the channels' names.
+ImageInfo exr_header(const std::string& path) {
+  const Imf::InputFile file(path.c_str(), 0);
+  const Imath::Box2i window = file.header().dataWindow();
+  ImageInfo info;
+  info.width = window.max.x - window.min.x + 1, info.height = window.max.y - window.min.y + 1;
+  info.format = SampleFormat::Half;
+  const Imf::ChannelList& channels = file.header().channels();
+  for (auto c = channels.begin(); c != channels.end(); ++c) {
+    info.channel_names.emplace_back(c.name());
+    if (c.channel().type != Imf::HALF) info.format = SampleFormat::Float;
+  }
+  info.channels = static_cast<int>(info.channel_names.size());
+  return info;
+}
+
+uint64_t size_of(const PictureFile& file) {
+  std::error_code failed;
+  if (file.bytes) return file.bytes->bytes.size();
+  const auto size = std::filesystem::file_size(file.path, failed);
+  return failed ? 0 : size;
+}
+
+/// A picture that is open, or is as good as open.
+struct Header {
+  ImageInfo info;
+  size_t reading = 0;  ///< Bytes that its reader takes.
+};
+
+std::optional<Header> header_of(const PictureFile& file) {
+  try {
+    if (size_of(file) == 0) return std::nullopt;
+    if (kind_of_picture(file) != PictureKind::Other) {
+      const auto rows = open_picture(file);
+      return Header{rows->info, rows->memory()};
+    }
+    if (!file.bytes && Imf::isOpenExrFile(file.path.c_str())) {
+      // OpenImageIO hands out strips of 256 rows.
+      Header header{exr_header(file.path), 0};
+      const size_t row = sizeof(float) * static_cast<size_t>(header.info.width) * header.info.channels;
+      header.reading = 2 * row * std::min<size_t>(256, header.info.height);
+      return header;
+    }
+    if (size_of(file) < kLeastOfOthers) return std::nullopt;
+    const auto rows = open_picture(file);
+    return Header{rows->info, rows->memory()};
+  } catch (const std::exception&) {
+    return std::nullopt;  // Whoever reads it says why.
+  }
+}
+
+}  // namespace
+
+std::optional<ImageInfo> quick_header(const PictureFile& file) {
+  const std::optional<Header> header = header_of(file);
+  return header ? std::optional(header->info) : std::nullopt;
+}
+
+MemoryNeed texture_need(const TextureSpec& spec) {
+  const std::optional<Header> header = header_of(spec.bytes ? PictureFile(spec.bytes) : PictureFile(spec.path));
+  if (!header) return {};
+  const MipMapOptions options{.single = spec.kind == TextureKind::Float,
+                              .alpha = spec.channel == TextureChannel::Alpha,
+                              .wrap = spec.wrap,
+                              .scale = spec.scale};
+  MemoryNeed need;
+  need.texels = MipMap::bytes_of_levels(header->info, options, 0);
+  need.making = header->reading + MipMap::bytes_to_read(header->info, options);
+  need.picture =
+      fmt::format("{}|{}|{}|{}|{}|{}", spec.path, static_cast<const void*>(spec.bytes.get()),
+                  static_cast<int>(spec.kind), static_cast<int>(spec.channel), static_cast<int>(spec.wrap), spec.scale);
+  return need;
+}
+
+}  // namespace whit

@@ -1,0 +1,19 @@
+// How much memory pictures are going to take, told by their headers.
+#pragma once
+
+#include <optional>
+
+#include "core/image/image.h"
+#include "core/image/texture_store.h"
+#include "core/plugin/memory_need.h"
+
+namespace whit {
+
+/// Of an image texture. Zeros where the file is none that can be read, and of small files of kinds that only
+/// OpenImageIO knows: loading that takes longer than many a scene.
+MemoryNeed texture_need(const TextureSpec& spec);
+
+/// The header of a picture, under the same conditions: nothing where it is not told.
+std::optional<ImageInfo> quick_header(const PictureFile& file);
+
+}  // namespace whit

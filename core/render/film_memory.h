@@ -1,0 +1,26 @@
+// What a film and its workers are going to take of memory, and the pictures that come of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/render/render.h"
+#include "core/scene/memory_plan.h"
+
+namespace whit {
+
+/// What a render is asked for, as far as memory depends on it.
+struct FilmNeed {
+  int threads = 0;                ///< 0: one per core.
+  bool crop_given = false;        ///< As RenderOptions.
+  double crop[4] = {0, 1, 0, 1};  ///< Likewise.
+  bool quick = false;             ///< BuildOptions::quick
+  bool blocks = false, adaptive = false;
+  std::vector<std::string> aovs{};     ///< Names that there are.
+  bool linear = true, display = true;  ///< Files that are written: of linear numbers, of numbers for displays.
+};
+
+/// Adds that to a plan.
+void plan_film_memory(const BoundScene& bound, const FilmNeed& need, MemoryPlan& memory);
+
+}  // namespace whit
