@@ -56,7 +56,8 @@ Formatted format_one(const std::string& path, FormatOptions options) {
     // Beside the scene, from whose folder the names in it start.
     options.ply_folder = std::filesystem::path(path).parent_path().string();
     d = format_file(sources, path, text, options);
-    if (sources.size() > 0) out.before = sources.text(0);
+    // What is no scene may be of any size.
+    if (sources.size() > 0 && !d.has_errors()) out.before = sources.text(0);
   }
   print_diagnostics(sources, d);
   if (d.has_errors()) {
