@@ -36,6 +36,19 @@ ImageInfo exr_header(const std::string& path) {
   return info;
 }
 
+/// Of a PFM file, as maps of light often are: "PF", or "Pf" of grey ones, width and height. Nothing of other files.
+std::optional<ImageInfo> pfm_header(const PictureFile& file) {
+  const FilePtr open = open_to_read(file);
+  char kind = 0;
+  ImageInfo info;
+  if (std::fscanf(open.get(), "P%c %d %d", &kind, &info.width, &info.height) != 3 || info.width <= 0 ||
+      info.height <= 0 || (kind != 'F' && kind != 'f'))
+    return std::nullopt;
+  info.channel_names = kind == 'F' ? std::vector<std::string>{"R", "G", "B"} : std::vector<std::string>{"Y"};
+  info.channels = static_cast<int>(info.channel_names.size());
+  return info;
+}
+
 uint64_t size_of(const PictureFile& file) {
   std::error_code failed;
   if (file.bytes) return file.bytes->bytes.size();
@@ -62,6 +75,10 @@ std::optional<Header> header_of(const PictureFile& file) {
       const size_t row = sizeof(float) * static_cast<size_t>(header.info.width) * header.info.channels;
       header.reading = 2 * row * std::min<size_t>(256, header.info.height);
       return header;
+    }
+    if (std::optional<ImageInfo> info = pfm_header(file)) {
+      const size_t bytes = sizeof(float) * static_cast<size_t>(info->width) * info->height * info->channels;
+      return Header{std::move(*info), bytes};
     }
     if (size_of(file) < kLeastOfOthers) return std::nullopt;
     const auto rows = open_picture(file);

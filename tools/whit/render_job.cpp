@@ -158,9 +158,11 @@ class RenderJob {
       if (name.empty() || written_.insert(name).second) continue;
       say(fmt::format("whit: warning: {} is written again by a later world of the same file", name));
     }
+    const Stopwatch estimating;
     MemoryPlan memory = plan_memory(planned, memory_request(*planned.bound.film.plugin, output));
     memory_estimate_ = memory.total();
     fit_textures(memory, memory_limit());
+    times_.plan += estimating.elapsed();
     if (int code = report_limit(memory_problem(memory, memory_limit())); code != kDone) return code;
     step_ = "building the scene";
     BuiltWorld built = build_world(std::move(planned), build_options(), static_cast<size_t>(memory.texture_cap()));
