@@ -13,6 +13,7 @@
 #include "core/base/fastmath.h"
 #include "core/image/image.h"
 #include "core/image/picture_need.h"
+#include "core/image/signature.h"
 #include "core/plugin/memory_limit.h"
 
 namespace whit {
@@ -263,6 +264,9 @@ MemoryNeed latlong_need(const std::string& path, LatLongRule rule) {
   const int channels = info->rgb_channels()[0] == info->rgb_channels()[1] ? 1 : 3;
   MemoryNeed need;
   need.light_map = LatLongMap::bytes(info->width, info->height, rule);
+  // What OpenImageIO takes with all its libraries, once it has been asked for.
+  constexpr uint64_t kOpenImageIO = uint64_t{80} << 20;
+  if (kind_of_picture(path) == PictureKind::Other) need.light_map += kOpenImageIO;
   // The picture's numbers, which its texels may take the place of; of others there are both for a while.
   const size_t pixels = sizeof(float) * static_cast<size_t>(info->width) * static_cast<size_t>(info->height);
   const size_t texels = pixels * static_cast<size_t>(channels), picture = pixels * static_cast<size_t>(info->channels);
