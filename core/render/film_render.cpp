@@ -478,6 +478,7 @@ bool FilmRender::extend_tasks(std::span<FilmRender* const> films) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   bool complete = true;
   for (FilmRender* film : films) {
+    const std::lock_guard lock(film->impl_->pass_lock);
     film->impl_->seconds += seconds / static_cast<double>(films.size());
     complete &= !film->impl_->stopped.exchange(false);
   }
