@@ -10,10 +10,14 @@ namespace whit {
 namespace {
 
 /// 1234567 as 1,234,567.
-std::string with_commas(uint64_t number) {
-  std::string digits = std::to_string(number);
-  for (size_t at = digits.size(); at > 3;) digits.insert(at -= 3, ",");
-  return digits;
+std::string with_commas(uint64_t n) {
+  std::string text;
+  const std::string digits = std::to_string(n);
+  for (size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text.push_back(',');
+    text.push_back(digits[i]);
+  }
+  return text;
 }
 
 TEST(Limits, ThePageHasARowForEach) {
