@@ -80,6 +80,17 @@ class Checkpoints(unittest.TestCase):
             process.wait()
         return process.returncode
 
+    def signal_once_rendering(self, process, number):
+        """Before it renders a signal ends it, as any program: from then on it is caught, as the kernel tells."""
+        while process.poll() is None:
+            with open(f"/proc/{process.pid}/status", encoding="ascii") as f:
+                caught = int(re.search(r"SigCgt:\s*([0-9a-f]+)", f.read())[1], 16)
+            if caught >> (signal.SIGTERM - 1) & 1:
+                break
+            time.sleep(0.02)
+        time.sleep(0.3)
+        process.send_signal(number)
+
     def test_kills(self):
         """A picture after random kills is the picture without. WHIT_KILLS says how many in all (10; by hand 200)."""
         kills = int(os.environ.get("WHIT_KILLS", "10"))
@@ -136,8 +147,7 @@ class Checkpoints(unittest.TestCase):
             name = number.name
             process = subprocess.Popen(self.command("--checkpoint", f"{name}.state", "-o", "stopped.exr"),
                                        cwd=self.folder.name, stderr=subprocess.PIPE, text=True)
-            time.sleep(1)
-            process.send_signal(number)
+            self.signal_once_rendering(process, number)
             said = process.communicate(timeout=60)[1]
             self.assertEqual(process.returncode, 5, said)
             self.assertRegex(said, rf"whit: stopped by {name} with [0-9.e-]+ % of the samples; --resume {name}.state goes on")
@@ -152,8 +162,7 @@ class Checkpoints(unittest.TestCase):
         for flags in ([], ["--target-error", "0.0001%"]):
             process = subprocess.Popen(self.command("-o", "stopped.exr", *flags), cwd=self.folder.name,
                                        stderr=subprocess.PIPE, text=True)
-            time.sleep(1)
-            process.send_signal(signal.SIGTERM)
+            self.signal_once_rendering(process, signal.SIGTERM)
             said = process.communicate(timeout=60)[1]
             self.assertEqual(process.returncode, 5, said)
             self.assertRegex(said, r"whit: stopped by SIGTERM with [0-9.e-]+ % of the samples\n")
@@ -241,19 +250,19 @@ class Checkpoints(unittest.TestCase):
         """The picture is in the checkpoint, and the message says so."""
         self.write("scene.pbrt", 1 << 20)
         os.mkdir(self.path("out"))
-        process = subprocess.Popen(self.command("-o", "out/picture.exr", "--checkpoint", "state"), cwd=self.folder.name,
+        process = subprocess.Popen(self.command("-o", "out/picture.exr", "--checkpoint", "state", "--every", "0.1s"), cwd=self.folder.name,
                                    stderr=subprocess.PIPE, text=True)
-        time.sleep(1)
+        while not os.path.exists(self.path("state")) and process.poll() is None:
+            time.sleep(0.02)
         os.rmdir(self.path("out"))
-        process.send_signal(signal.SIGINT)
+        self.signal_once_rendering(process, signal.SIGINT)
         said = process.communicate(timeout=60)[1]
         self.assertEqual(process.returncode, 4, said)
         self.assertIn("what was rendered is kept: the same command with --resume state and another --outfile writes it",
                       said)
         process = subprocess.Popen(self.command("-o", "picture.exr", "--resume", "state"), cwd=self.folder.name,
                                    stderr=subprocess.PIPE, text=True)
-        time.sleep(1)
-        process.send_signal(signal.SIGINT)
+        self.signal_once_rendering(process, signal.SIGINT)
         share = float(re.search("with ([0-9.e-]+) %", process.communicate(timeout=60)[1])[1])
         self.assertGreater(share, float(re.search("([0-9.e-]+) %", said)[1]) if "%" in said else 0)
         self.assertTrue(os.path.exists(self.path("picture.exr")))
