@@ -121,7 +121,7 @@ class Commands(Case):
         # A file of that name is a scene, as with any other word.
         with open(os.path.join(self.folder, "version"), "w", encoding="utf-8") as f:
             f.write("Nonsense\n")
-        self.fails(3, "Nonsense", "version")
+        self.fails(3, "version:1:1: error: not a scene file", "version")
 
     def test_a_misspelt_command_is_said_to_be_one(self):
         slips = {"chekc": "check", "dif": "diff", "ftm": "fmt", "explian": "explain", "costs": "cost", "bensh": "bench",

@@ -85,6 +85,7 @@ int dispatch(const Arguments& args) {
 int finish(int code) {
   const bool printed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   if (printed && std::cout.flush()) return code;
+  if (code == kFileError) return code;  // It has been said.
   say("whit: cannot write to standard output");
   return std::max<int>(code, kFileError);
 }
