@@ -166,7 +166,8 @@ std::string forbid_calls(bool serves) {
   for (const char* name : kForbidden) good &= forbid(filter.get(), name);
   if (serves) {
     // Of what sends, only what has no address: to those who are connected.
-    good &= ::seccomp_rule_add(filter.get(), SCMP_ACT_ERRNO(EPERM), SCMP_SYS(sendto), 1, SCMP_A4(SCMP_CMP_NE, 0)) == 0;
+    const scmp_arg_cmp has_address{4, SCMP_CMP_NE, 0, 0};
+    good &= ::seccomp_rule_add_array(filter.get(), SCMP_ACT_ERRNO(EPERM), SCMP_SYS(sendto), 1, &has_address) == 0;
     for (const char* name : kCalls) good &= forbid(filter.get(), name);
   } else {
     good &= forbid(filter.get(), "sendto");
