@@ -92,21 +92,19 @@ AtomicFile::AtomicFile(const std::string& path) : target_(path) {
     fail(ENAMETOOLONG);
     return;
   }
-  remove_left_over(target_);
   fd_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
   if (fd_ < 0) open_temporary();
+  // So that nobody takes it for one that was left. Where there are no locks, what is left is not removed.
+  if (fd_ >= 0) ::flock(fd_, LOCK_EX | LOCK_NB);
 }
 
 /// Where the file system, or the kernel, has no files without a name.
 void AtomicFile::open_temporary() {
   temporary_ = temporary_name(target_);
   fd_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd_ >= 0) {
-    ::flock(fd_, LOCK_EX | LOCK_NB);  // Where there are no locks, what is left is not removed.
-  } else {
-    fail(errno);
-    temporary_.clear();
-  }
+  if (fd_ >= 0) return;
+  fail(errno);
+  temporary_.clear();
 }
 
 AtomicFile::~AtomicFile() {
@@ -154,6 +152,8 @@ void AtomicFile::give_name() {
 }
 
 std::string AtomicFile::commit() {
+  // Keeps the lock until the file has its name: what closing says must be known before.
+  const int held = fd_ >= 0 ? ::fcntl(fd_, F_DUPFD_CLOEXEC, 0) : -1;
   if (fd_ >= 0) {
     // EINVAL: the file system cannot flush a single file; close() still reports what it knows.
     if (failure_.empty() && ::fsync(fd_) != 0 && errno != EINVAL) fail(errno);
@@ -162,7 +162,8 @@ std::string AtomicFile::commit() {
     fd_ = -1;
   }
   if (failure_.empty() && ::rename(temporary_.c_str(), target_.c_str()) != 0) fail(errno);
-  if (failure_.empty()) temporary_.clear();
+  if (failure_.empty()) temporary_.clear(), remove_left_over(target_);
+  if (held >= 0) ::close(held);
   return failure_;
 }
 
