@@ -76,22 +76,30 @@ struct Head {
   }
 };
 
-/// Opens what a file holds; `problem` is "" where it is a checkpoint that is whole.
-Head read_head(std::string_view bytes, std::string& problem, std::string_view& state) {
-  Head head;
-  if (!bytes.starts_with(kMagic)) {
-    problem = "it is no checkpoint";
-    return head;
+/// A checkpoint that is there.
+struct Kept {
+  explicit Kept(const std::string& path) : file(path) {
+    std::string_view bytes = file.bytes();
+    if (!(problem = file.error()).empty()) return;
+    if (!is_checkpoint()) {
+      problem = "it is no checkpoint";
+      return;
+    }
+    uint64_t sum = 0;
+    if (bytes.size() >= kMagic.size() + kSum) std::memcpy(&sum, bytes.data() + bytes.size() - kSum, kSum);
+    bytes.remove_suffix(std::min(bytes.size(), kSum));
+    ByteReader in(bytes);
+    head.restore(in);
+    if (!in.ok() || checksum(bytes) != sum) problem = "it is damaged: its checksum is wrong";
+    state = in.rest();
   }
-  uint64_t sum = 0;
-  if (bytes.size() >= kMagic.size() + kSum) std::memcpy(&sum, bytes.data() + bytes.size() - kSum, kSum);
-  bytes.remove_suffix(std::min(bytes.size(), kSum));
-  ByteReader in(bytes);
-  head.restore(in);
-  if (!in.ok() || checksum(bytes) != sum) problem = "it is damaged: its checksum is wrong";
-  state = in.rest();
-  return head;
-}
+  bool is_checkpoint() const { return file.bytes().starts_with(kMagic); }
+
+  const MappedFile file;
+  Head head;
+  std::string_view state;
+  std::string problem;  ///< "" where it is one and whole.
+};
 
 }  // namespace
 
@@ -132,7 +140,9 @@ std::string difference(const RenderIdentity& was, const RenderIdentity& is) {
 Checkpoint::Checkpoint(std::string path, Seconds every, RenderIdentity identity)
     : path_(std::move(path)), every_(every), identity_(std::move(identity)) {}
 
-Checkpoint::~Checkpoint() {
+Checkpoint::~Checkpoint() { end_writer(); }
+
+void Checkpoint::end_writer() {
   {
     const std::lock_guard lock(mutex_);
     ended_ = true;
@@ -142,30 +152,24 @@ Checkpoint::~Checkpoint() {
 }
 
 Checkpoint::Problem Checkpoint::resume(const std::string& path) {
-  const MappedFile file(path);
-  std::string problem = file.error();
-  std::string_view state;
-  const Head head = problem.empty() ? read_head(file.bytes(), problem, state) : Head{};
+  const Kept kept(path);
+  std::string state(kept.state);
+  const std::string problem = kept.problem.empty() ? kept.file.problem() : kept.problem;
   if (!problem.empty()) return {Trouble::Unreadable, fmt::format("cannot go on from \"{}\": {}", path, problem)};
-  problem = difference(head.identity, identity_);
-  if (!problem.empty())
-    return {Trouble::Different, fmt::format("cannot go on from \"{}\", which is of another render: {}", path, problem)};
-  kept_ = state;
-  problem = file.problem();
-  if (!problem.empty()) return {Trouble::Unreadable, fmt::format("cannot go on from \"{}\": {}", path, problem)};
+  const std::string other = difference(kept.head.identity, identity_);
+  if (!other.empty())
+    return {Trouble::Different, fmt::format("cannot go on from \"{}\", which is of another render: {}", path, other)};
+  kept_ = std::move(state);
   return {};
 }
 
 std::string Checkpoint::reason_against(const std::string& path) {
   std::error_code failed;
   if (std::filesystem::exists(path, failed)) {
-    const MappedFile file(path);
-    std::string problem = file.error();
-    std::string_view state;
-    const Head head = problem.empty() ? read_head(file.bytes(), problem, state) : Head{};
-    if (!file.bytes().empty() && !file.bytes().starts_with(kMagic))
+    const Kept kept(path);
+    if (!kept.file.bytes().empty() && !kept.is_checkpoint())
       return fmt::format("\"{}\" is there already and no checkpoint; name another file", path);
-    if (problem.empty() && !head.complete) {
+    if (kept.problem.empty() && !kept.head.complete) {
       return fmt::format(
           "\"{}\" holds a render that has not ended; --resume {} goes on with it (remove the file to begin anew)", path,
           path);
@@ -187,12 +191,7 @@ bool Checkpoint::begin(FilmRender& film) {
 }
 
 void Checkpoint::end(FilmRender& film, bool complete) {
-  {
-    const std::lock_guard lock(mutex_);
-    ended_ = true;
-  }
-  ends_.notify_all();
-  if (writer_.joinable()) writer_.join();
+  end_writer();
   write(film, complete);
 }
 

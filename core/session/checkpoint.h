@@ -65,6 +65,7 @@ class Checkpoint final : public FilmKeeper {
   std::string write_problem() const;
 
  private:
+  void end_writer();
   void write_now_and_then(const FilmRender& film);
   void write(const FilmRender& film, bool complete);
 
