@@ -10,6 +10,21 @@
 
 namespace whit {
 
+size_t numbers_a_value(ParamType type) {
+  switch (type) {
+    case ParamType::Point2:
+    case ParamType::Vector2:
+    case ParamType::Blackbody:
+    case ParamType::Spectrum: return 2;
+    case ParamType::Point3:
+    case ParamType::Vector3:
+    case ParamType::Normal3:
+    case ParamType::Rgb:
+    case ParamType::Xyz: return 3;
+    default: return 1;
+  }
+}
+
 namespace {
 
 struct TypeName {
@@ -40,22 +55,6 @@ Remedy type_remedy(const std::string& name) {
 bool is_spectral(ParamType type) {
   return type == ParamType::Rgb || type == ParamType::Xyz || type == ParamType::Blackbody ||
          type == ParamType::Spectrum;
-}
-
-/// How many numbers make one value of a type.
-size_t numbers_a_value(ParamType type) {
-  switch (type) {
-    case ParamType::Point2:
-    case ParamType::Vector2:
-    case ParamType::Blackbody:
-    case ParamType::Spectrum: return 2;
-    case ParamType::Point3:
-    case ParamType::Vector3:
-    case ParamType::Normal3:
-    case ParamType::Rgb:
-    case ParamType::Xyz: return 3;
-    default: return 1;
-  }
 }
 
 bool takes_numbers(ParamType type) {

@@ -6,7 +6,7 @@
 #include "parser/parse.h"
 #include "tests/fuzz/shared/fuzz.h"
 #include "tests/fuzz/shared/meaning.h"
-#include "tests/fuzz/shared/scene_mutator.h"
+#include "tests/fuzz/shared/scene_entries.h"
 
 namespace {
 
@@ -47,13 +47,4 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   require(formatted(once.text).text == once.text);
   require(meaning(once.text) == meaning(text));
   return 0;
-}
-
-extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
-  return whit::fuzz::mutate_scene(data, size, max_size, seed);
-}
-
-extern "C" size_t LLVMFuzzerCustomCrossOver(const uint8_t* a, size_t a_size, const uint8_t* b, size_t b_size,
-                                            uint8_t* out, size_t max_size, unsigned seed) {
-  return whit::fuzz::cross_scenes({a, a_size}, {b, b_size}, out, max_size, seed);
 }

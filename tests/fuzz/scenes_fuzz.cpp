@@ -9,8 +9,8 @@
 #include "core/session/models.h"
 #include "core/session/session.h"
 #include "tests/fuzz/shared/fuzz.h"
+#include "tests/fuzz/shared/scene_entries.h"
 #include "tests/fuzz/shared/scene_limits.h"
-#include "tests/fuzz/shared/scene_mutator.h"
 
 namespace {
 
@@ -52,13 +52,4 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (parsed.scenes.size() > 4) parsed.scenes.resize(4);
   for (whit::SceneDescription& world : parsed.scenes) render(std::move(world), sources);
   return 0;
-}
-
-extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max_size, unsigned seed) {
-  return whit::fuzz::mutate_scene(data, size, max_size, seed);
-}
-
-extern "C" size_t LLVMFuzzerCustomCrossOver(const uint8_t* a, size_t a_size, const uint8_t* b, size_t b_size,
-                                            uint8_t* out, size_t max_size, unsigned seed) {
-  return whit::fuzz::cross_scenes({a, a_size}, {b, b_size}, out, max_size, seed);
 }

@@ -22,22 +22,6 @@ constexpr std::string_view kFiles[] = {"grey.png",   "half.jpg",      "pole.pfm"
                                        "small.bsdf", "triangle.gltf", "shape.pbrt", "missing"};
 constexpr std::string_view kNames[] = {"a", "b", "t1", "t2", "m1", "m2", "", "camera", "world"};
 
-/// How many numbers a value has.
-size_t width_of(ParamType type) {
-  switch (type) {
-    case ParamType::Point2:
-    case ParamType::Vector2:
-    case ParamType::Blackbody:
-    case ParamType::Spectrum: return 2;
-    case ParamType::Point3:
-    case ParamType::Vector3:
-    case ParamType::Normal3:
-    case ParamType::Rgb:
-    case ParamType::Xyz: return 3;
-    default: return 1;
-  }
-}
-
 std::string string_value(const ParamSpec& spec, Dice& dice) {
   if (!spec.choices.empty() && !dice.one_in(16)) return quoted(any(spec.choices, dice));
   if (spec.is_file && !dice.one_in(16)) return quoted(std::string(dice.one_of(kFiles)));
@@ -54,7 +38,7 @@ void add_value(ParamType type, const ParamSpec& spec, Dice& dice, Tokens& out) {
         out.emplace_back("\"lamp.spd\"");
         break;
       }
-      for (size_t i = 0; i < width_of(type); ++i) out.push_back(odd_number(dice));
+      for (size_t i = 0; i < numbers_a_value(type); ++i) out.push_back(odd_number(dice));
   }
 }
 
