@@ -6,36 +6,19 @@
 
 #include <numeric>
 
-#include "core/session/session.h"
+#include "tests/render/film_world.h"
 
 namespace whit {
 namespace {
 
-/// A grey ball in front of a brighter sky, with what is varied.
-struct World {
-  ParsedFile file;
-  BuiltWorld built;
-  const Scene& scene() const { return *built.scene; }
-};
-World world(const std::string& filter, const std::string& sampler = "random") {
-  World out;
-  out.file = read_scene_text("scene",
-                             "Film \"image\" \"integer xresolution\" [40] \"integer yresolution\" [24]\n"
-                             "Camera \"perspective\" \"float fov\" [40]\n" +
-                                 filter + "Sampler \"" + sampler +
-                                 "\"\nWorldBegin\n"
-                                 "LightSource \"infinite\" \"rgb L\" [1 2 3]\n"
-                                 "Translate 0 0 5 Material \"matte\" Shape \"sphere\"\nWorldEnd\n");
-  out.built = build_world(plan_world(out.file.worlds.at(0), *out.file.sources));
-  return out;
-}
-
-const char* const kGaussian = "PixelFilter \"gaussian\" \"float xwidth\" [2] \"float ywidth\" [2]\n";
+using test::kGaussian;
+using World = test::FilmWorld;
+using test::film_world;
 
 TEST(FilmRender, PassesAreOnePicture) {
   for (const char* filter : {"", kGaussian}) {
     for (const char* sampler : {"random", "sobol", "02sequence"}) {
-      const World of = world(filter, sampler);
+      const World of = film_world(filter, sampler);
       FilmRender once(of.scene(), {}), twice(of.scene(), {}), blocks(of.scene(), {.threads = 1, .blocks = true});
       ASSERT_TRUE(once.extend(256));
       ASSERT_TRUE(twice.extend(64) && twice.extend(256));
@@ -47,7 +30,7 @@ TEST(FilmRender, PassesAreOnePicture) {
 }
 
 TEST(FilmRender, FilmsThatGrowInTurnAreThoseThatGrowAlone) {
-  const World of = world(kGaussian);
+  const World of = film_world(kGaussian);
   FilmRender alone(of.scene(), {}), a(of.scene(), {}), b(of.scene(), {});
   alone.extend(8);
   FilmRender* const films[] = {&a, &b};
@@ -58,7 +41,7 @@ TEST(FilmRender, FilmsThatGrowInTurnAreThoseThatGrowAlone) {
 }
 
 TEST(FilmRender, UnitsCoverEachPixelOnce) {
-  const World of = world(kGaussian);
+  const World of = film_world(kGaussian);
   FilmRender film(of.scene(), {.adaptive = true});
   for (int y = 0; y < 24; ++y) {
     for (int x = 0; x < 40; ++x) {
@@ -72,7 +55,7 @@ TEST(FilmRender, UnitsCoverEachPixelOnce) {
 }
 
 TEST(FilmRender, UnitsKnowTheirAreas) {
-  const World of = world(kGaussian);
+  const World of = film_world(kGaussian);
   RenderOptions options;
   options.adaptive = true, options.crop_given = true;
   // 13 x 7 pixels of the picture, and as many more around as the filter reaches.
@@ -94,7 +77,7 @@ TEST(FilmRender, UnitsKnowTheirAreas) {
 }
 
 TEST(FilmRender, UnitsHaveTheSamplesTheyAreGivenForAnyThreads) {
-  const World of = world(kGaussian);
+  const World of = film_world(kGaussian);
   const auto render_with = [&](int threads) {
     FilmRender film(of.scene(), {.threads = threads, .blocks = true, .adaptive = true});
     film.extend(16);
@@ -113,7 +96,7 @@ TEST(FilmRender, UnitsHaveTheSamplesTheyAreGivenForAnyThreads) {
 /// The sky is 2 in green and nothing else is there, so that the value of a pixel says how its weights add up; and on an
 /// even slope a symmetric filter gives the middle's value, unless the denser side pulls it.
 TEST(TileSums, ADenserUnitPullsNoFilter) {
-  const World of = world(kGaussian);
+  const World of = film_world(kGaussian);
   const FilterTable filter(of.scene().filter());
   const TileGrid grid{{0, 0}, 2, 1, 16, 1};
   std::vector<TileSums> sums;
@@ -140,7 +123,7 @@ TEST(TileSums, ADenserUnitPullsNoFilter) {
 }
 
 TEST(TileSums, VarianceIsThatOfTheMeanOfFourBlocks) {
-  const World of = world("");
+  const World of = film_world("");
   const FilterTable filter(of.scene().filter());
   const TileGrid grid{{0, 0}, 1, 1};
   std::vector<TileSums> sums;

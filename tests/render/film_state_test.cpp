@@ -4,32 +4,14 @@
 #include <string>
 
 #include "core/render/film_render.h"
-#include "core/session/session.h"
+#include "tests/render/film_world.h"
 
 namespace whit {
 namespace {
 
-struct World {
-  ParsedFile file;
-  BuiltWorld built;
-  const Scene& scene() const { return *built.scene; }
-};
-
-/// A ball before a sky, of 40 x 24 pixels: six tiles.
-World world(const std::string& filter, const std::string& sampler) {
-  World out;
-  out.file = read_scene_text("scene",
-                             "Film \"image\" \"integer xresolution\" [40] \"integer yresolution\" [24]\n"
-                             "Camera \"perspective\" \"float fov\" [40]\n" +
-                                 filter + "Sampler \"" + sampler +
-                                 "\"\nWorldBegin\n"
-                                 "LightSource \"infinite\" \"rgb L\" [1 2 3]\n"
-                                 "Translate 0 0 5 Material \"matte\" Shape \"sphere\"\nWorldEnd\n");
-  out.built = build_world(plan_world(out.file.worlds.at(0), *out.file.sources));
-  return out;
-}
-
-const char* const kGaussian = "PixelFilter \"gaussian\" \"float xwidth\" [2] \"float ywidth\" [2]\n";
+using test::film_world;
+using test::kGaussian;
+using World = test::FilmWorld;
 
 std::string state_of(const FilmRender& film) {
   std::string state;
@@ -68,7 +50,7 @@ class FilmState : public testing::TestWithParam<std::tuple<bool, bool, bool, con
 
 /// Stopped at every of its tiles and rounds in turn, by a progress that says no the k-th time.
 TEST_P(FilmState, GoesOnWhereverItWasStopped) {
-  const World of = world(std::get<3>(GetParam()), "sobol");
+  const World of = film_world(std::get<3>(GetParam()), "sobol");
   FilmRender whole(of.scene(), options());
   ASSERT_TRUE(whole.extend(64) && whole.extend(128));
   const std::vector<float> wanted = values_of(whole);
@@ -97,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, FilmState,
                                           testing::Values("", kGaussian)));
 
 TEST(FilmStates, AreSavedWhileOthersRender) {
-  const World of = world(kGaussian, "random");
+  const World of = film_world(kGaussian, "random");
   FilmRender whole(of.scene(), {});
   ASSERT_TRUE(whole.extend(256));
   // Every state that is seen on the way leads to the same picture.
@@ -122,7 +104,7 @@ TEST(FilmStates, AreSavedWhileOthersRender) {
 
 TEST(FilmStates, SixtyFourAndAsManyAgainAsMakeTwoHundredAndFiftySix) {
   for (const char* filter : {"", kGaussian}) {
-    const World of = world(filter, "sobol");
+    const World of = film_world(filter, "sobol");
     FilmRender once(of.scene(), {}), first(of.scene(), {}), second(of.scene(), {});
     ASSERT_TRUE(once.extend(256) && first.extend(64));
     ASSERT_TRUE(restore(second, state_of(first)));
@@ -133,7 +115,7 @@ TEST(FilmStates, SixtyFourAndAsManyAgainAsMakeTwoHundredAndFiftySix) {
 }
 
 TEST(FilmStates, OthersAreRefused) {
-  const World of = world("", "sobol"), filtered = world(kGaussian, "sobol");
+  const World of = film_world("", "sobol"), filtered = film_world(kGaussian, "sobol");
   FilmRender film(of.scene(), {}), other(filtered.scene(), {}), adaptive(of.scene(), options_for(true, true, false)),
       layers(of.scene(), options_for(false, false, true));
   ASSERT_TRUE(film.extend(4));
@@ -150,7 +132,7 @@ TEST(FilmStates, OthersAreRefused) {
 }
 
 TEST(FilmStates, NotesComeBack) {
-  const World of = world("", "sobol");
+  const World of = film_world("", "sobol");
   FilmRender film(of.scene(), {}), on(of.scene(), {});
   ASSERT_TRUE(film.extend(std::vector<uint32_t>(film.units().size(), 4), "a note"));
   ASSERT_TRUE(restore(on, state_of(film)));
