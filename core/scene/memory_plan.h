@@ -86,7 +86,7 @@ class MemoryPlan {
 void plan_scene_memory(const BoundScene& bound, const EffectPlan& plan, int threads, double texture_cap,
                        MemoryPlan& memory);
 
-/// What is said where the plan takes more than `limit` bytes: an error of class Limit at the statement that takes most,
+/// What is said where the plan takes more than `limit` bytes: an error named kLimitHit at the statement that takes most,
 /// with the breakdown and what to do; nothing where it fits.
 Diagnostics memory_problem(const MemoryPlan& memory, uint64_t limit);
 
