@@ -5,17 +5,10 @@
 
 #include <fstream>
 
+#include "core/base/file_names.h"
+
 namespace whit {
 namespace {
-
-/// As a shell takes it for one word.
-std::string quoted(const std::string& word) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./+-=,@%:";
-  if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
-  std::string out = "'";
-  for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 std::string processor() {
   std::ifstream info("/proc/cpuinfo");
@@ -40,7 +33,8 @@ const char* vectors() {
 }  // namespace
 
 std::string cost_command(const CostRequest& request, int samples, const std::string& flags) {
-  std::string command = fmt::format("{} {} --spp {}", quoted(request.program), quoted(request.scene_path), samples);
+  std::string command =
+      fmt::format("{} {} --spp {}", shell_word(request.program), shell_word(request.scene_path), samples);
   if (request.threads > 0) command += fmt::format(" --nthreads {}", request.threads);
   return flags.empty() ? command : command + " " + flags;
 }

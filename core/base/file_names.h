@@ -15,4 +15,7 @@ std::string percent_encoded(std::string_view path);
 /// The other way. A % that no two hexadecimal digits follow stays.
 std::string percent_decoded(std::string_view text);
 
+/// A name as a shell takes it for one word: as it is where nothing in it means anything to a shell, else in quotes.
+std::string shell_word(const std::string& word);
+
 }  // namespace whit

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/base/file_names.h"
 #include "core/base/mapped_file.h"
 #include "core/image/atomic_file.h"
 #include "core/image/checksum.h"
@@ -172,7 +173,7 @@ std::string Checkpoint::reason_against(const std::string& path) {
     if (kept.problem.empty() && !kept.head.complete) {
       return fmt::format(
           "\"{}\" holds a render that has not ended; --resume {} goes on with it (remove the file to begin anew)", path,
-          path);
+          shell_word(path));
     }
   }
   const std::string problem = AtomicFile(path).failure();

@@ -158,6 +158,9 @@ class Checkpoints(unittest.TestCase):
         # The state is that of a render that has not ended: it is not written over.
         said = self.run_whit("--checkpoint", "SIGINT.state", code=4)
         self.assertIn("holds a render that has not ended; --resume SIGINT.state goes on with it", said)
+        # What is to be pasted into a shell is one word there.
+        os.rename(self.path("SIGINT.state"), self.path("a state"))
+        self.assertIn("--resume 'a state' goes on with it", self.run_whit("--checkpoint", "a state", code=4))
 
     def test_a_signal_without_a_checkpoint(self):
         self.write("scene.pbrt", 1 << 20)

@@ -15,6 +15,7 @@
 #include <string>
 #include <tuple>
 
+#include "core/base/file_names.h"
 #include "core/plugin/memory_limit.h"
 #include "core/render/debug_sample.h"
 #include "core/render/film_render.h"
@@ -275,7 +276,7 @@ class RenderJob {
   int say_stopped(const RenderResult& result) const {
     std::string remedy;
     if (checkpoint_ && checkpoint_->write_problem().empty())
-      remedy = fmt::format("; --resume {} goes on", checkpoint_->path());
+      remedy = fmt::format("; --resume {} goes on", shell_word(checkpoint_->path()));
     say(fmt::format("whit: {}{}", stopped_text(result), remedy));
     return kLimit;
   }
@@ -319,7 +320,7 @@ class RenderJob {
       if (checkpoint_ && checkpoint_->write_problem().empty()) {
         say(fmt::format(
             "whit: what was rendered is kept: the same command with --resume {} and another --outfile writes it",
-            checkpoint_->path()));
+            shell_word(checkpoint_->path())));
       }
       return code;
     }
