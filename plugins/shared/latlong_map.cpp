@@ -57,15 +57,15 @@ Texels take_texels(Image&& image) {
 }
 
 /// The cell between texel centres that a map coordinate t (texel i having its centre at i + 1/2) lies in: cell k lies
-/// between texels k - 1 and k, for t in [0, n] and k in [0, n]. And how far in: 0 at texel k - 1, 1 at texel k.
+/// between texels k - 1 and k, for t in [0, n] and k in [0, n]. And how far in: 0 at texel k - 1, 1 at texel k. A
+/// coordinate that is no number, as directions far from everything may give, is in cell 0 and no number in there.
 struct Cell {
   int k;
   float within;
 };
 inline Cell cell_at(float t, int n) {
-  const float floor = std::floor(t - 0.5f);
-  const int k = static_cast<int>(floor) + 1;
-  return {k < 0 ? 0 : (k > n ? n : k), t - 0.5f - floor};
+  const float floor = std::floor(t - 0.5f), k = floor + 1, last = static_cast<float>(n);
+  return {static_cast<int>(k > 0 ? (k < last ? k : last) : 0.0f), t - 0.5f - floor};
 }
 
 /// Map coordinates of unit directions: x in [0, width], y in [0, height].

@@ -333,6 +333,21 @@ TEST(Environment, ExtremeNumbersStayFinite) {
   }
 }
 
+TEST(Environment, DirectionsThatAreNoneGiveNoRadianceAndNoLookOutsideOfTheMap) {
+  // Rays from far outside of what floats can do may have lost their direction. No texel is theirs, so that their sample
+  // counts as invalid (Statistics::invalid_samples), or nothing is seen; a number made up for them would be a silent one.
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Scene& scene : scenes()) {
+    SCOPED_TRACE(scene.name);
+    const auto light = scene.make();
+    const bool constant = std::string(scene.name) == "infinite constant";
+    for (const Vec3f& d : {Vec3f(nan, 0, 1), Vec3f(0, nan, 0), Vec3f(nan, nan, nan)}) {
+      const RGB seen = escaped(*light.plugin, scene.p, d);
+      for (int c = 0; c < 3; ++c) EXPECT_TRUE(constant || seen[c] == 0 || std::isnan(seen[c])) << seen[c];
+    }
+  }
+}
+
 TEST(Environment, MapsAreSampledWhereTheyAreBright) {
   // One hot texel: its tent of radiance over four cells. The relative deviation of Li / pdf inside a cell is that of
   // a product of two linear ramps, sqrt((4/3)^2 - 1) = 0.88, and all cells have the same mean, whatever the sphere
