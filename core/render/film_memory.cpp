@@ -115,6 +115,7 @@ void plan_output_memory(const FilmSize& s, const AovNumbers& aovs, const FilmNee
 }  // namespace
 
 void plan_film_memory(const BoundScene& bound, const FilmNeed& need, MemoryPlan& memory) {
+  if (!bound.film.plugin || !bound.filter.plugin) return;
   const FilmSize s = size_of(bound, need);
   const AovNumbers aovs = aov_numbers(bound, need.aovs);
   const double film = s.units * unit_bytes(s, aovs, need.blocks || aovs.blocks);

@@ -20,7 +20,7 @@ struct FilmNeed {
   bool linear = true, display = true;  ///< Files that are written: of linear numbers, of numbers for displays.
 };
 
-/// Adds that to a plan.
+/// Adds that to a plan; nothing where film or filter are no good, for then no picture will be made.
 void plan_film_memory(const BoundScene& bound, const FilmNeed& need, MemoryPlan& memory);
 
 }  // namespace whit

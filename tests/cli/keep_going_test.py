@@ -130,6 +130,20 @@ class KeepGoing(unittest.TestCase):
                 self.assertEqual(len(re.findall(": error: ", said)), 1, said)
                 self.assertIsNone(self.picture())
 
+    def test_nothing_is_seen_without_what_every_picture_needs(self):
+        # Found by the mutator: memory was estimated of a filter that was none.
+        plain = SCENE % ("", SPHERE)
+        for statement in ('Film "image" "integer xresolution" -3', 'PixelFilter "mitchell" "float xwidth" -0.1',
+                          'PixelFilter "sinc" "float ywidth" -2', 'Camera "perspective" "float fov" 400',
+                          'Sampler "random" "integer pixelsamples" -1'):
+            with self.subTest(statement):
+                text = re.sub("(?m)^%s .*" % statement.split()[0], "", plain)
+                code, said = self.whit(self.write("scene.pbrt", text.replace("WorldBegin", statement + "\nWorldBegin")),
+                                       "--keep-going", "--quiet")
+                self.assertEqual(code, 3, said)
+                self.assertEqual(len(re.findall("error: ", said)), 1, said)
+                self.assertIsNone(self.picture())
+
     def test_each_problem_is_said_once(self):
         # A file that does not parse is reported whole, and planned again to go on.
         text = SCENE % ('Rotate 1 0 0 0\nMaterial "matte" "float sigma" -1e400 "rgb kd" [1 1 1]\n'

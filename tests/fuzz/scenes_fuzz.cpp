@@ -1,11 +1,12 @@
-// libFuzzer entry: any text is a scene, which is parsed, planned, built and rendered, 4 x 4 pixels of one sample. Every
-// number of the picture must be one.
+// libFuzzer entry: any text is a scene, which is parsed, planned, measured, built and rendered, 4 x 4 pixels of one
+// sample. Every number of the picture must be one.
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/image/oiio/module.h"
+#include "core/session/memory.h"
 #include "core/session/models.h"
 #include "core/session/session.h"
 #include "tests/fuzz/shared/fuzz.h"
@@ -27,6 +28,7 @@ void render(whit::SceneDescription world, const whit::Sources& sources) {
   whit::fuzz::limit(world);
   whit::PlannedWorld planned = whit::plan_world(world, sources);
   const bool has_errors = planned.said.has_errors();
+  require(whit::plan_memory(planned, {.texture_bytes = size_t{64} << 20, .film = {.threads = 1}}).total() > 0);
   const whit::BuiltWorld built =
       whit::build_world(std::move(planned), {.samples_per_pixel = 1, .keep_going = true}, size_t{64} << 20);
   require(built.scene || has_errors || built.said.has_errors());

@@ -44,9 +44,10 @@ EXTREMES = [b"0", b"-0", b"1", b"-1", b"0.5", b"1e-45", b"1e-38", b"1e-30", b"1e
 TYPES = [b"float", b"integer", b"bool", b"string", b"rgb", b"color", b"xyz", b"spectrum", b"blackbody", b"texture", b"point",
          b"point2", b"point3", b"vector", b"vector2", b"normal", b"normal3", b"double"]
 INTEGRATORS = [b"ambientocclusion", b"directlighting", b"path", b"whitted", b"volpath"]
-# Counts of directions that end within the time, and what is no count.
+# Counts of bounces and directions that end within the time, and what is no count. A million bounces between mirrors are
+# what a scene may ask for, and no hang.
 INTEGRATOR_PARAMETERS = {
-    b"integer maxdepth": EXTREMES, b"float rrthreshold": EXTREMES,
+    b"integer maxdepth": [n for n in EXTREMES if n not in (b"1e6", b"65536")] + [b"100"], b"float rrthreshold": EXTREMES,
     b"integer nsamples": [b"1", b"2", b"100", b"0", b"-1", b"2147483648", b"nan"],
     b"bool cossample": [b'"true"', b'"false"', b'"maybe"', b"1"],
     b"string strategy": [b'"one"', b'"all"', b'"none"', b"1"],
