@@ -10,9 +10,8 @@ namespace {
 
 /// No other film of a study has it.
 constexpr uint32_t kFirstLookSeed = 2000;
-/// Samples that are added at once, so that a render can be stopped within a tile: a multiple of kRound.
+/// Samples that are added at once, so that a render can be stopped within a tile.
 constexpr uint32_t kStep = 256;
-static_assert(kStep % kRound == 0);
 
 Elapsed more(const Elapsed& a, const Elapsed& b) {
   return {std::max(0.0, a.wall - b.wall), std::max(0.0, a.cpu - b.cpu)};

@@ -13,13 +13,13 @@
 namespace whit {
 namespace {
 
-void note(std::vector<Coverage>& coverage, uint32_t id, double weight) {
-  for (Coverage& c : coverage) {
-    if (c.id != id) continue;
-    c.weight += weight;
-    return;
-  }
-  coverage.push_back({id, weight});
+/// Adds to what covers a pixel, sorted by number: the order in which things are met must not be seen in sums of them.
+void note(std::vector<Coverage>& coverage, const Coverage& more) {
+  const auto before = [](const Coverage& c, uint32_t id) { return c.id < id; };
+  auto at = std::lower_bound(coverage.begin(), coverage.end(), more.id, before);
+  if (at == coverage.end() || at->id != more.id) at = coverage.insert(at, {more.id, 0, 0});
+  add_exactly(at->weight, at->rest, more.weight);
+  at->rest += more.rest;
 }
 
 }  // namespace
@@ -31,7 +31,8 @@ AovTile::AovTile(const AovPlan& plan, Vec2i tile, const FilterTable& filter, int
       x0_(tile.x * size),
       y0_(tile.y * size),
       stride_(plan.means + 2),
-      sums_(stride_ * reach_.pixels()) {
+      sums_(stride_ * reach_.pixels()),
+      rests_(sums_.size()) {
   const auto own_pixels = static_cast<size_t>(size * size);
   coverage_.assign(plan.mattes.size(), std::vector<std::vector<Coverage>>(reach_.pixels()));
   distance_.assign(own_pixels, std::numeric_limits<float>::infinity());
@@ -54,17 +55,18 @@ void AovTile::add_sums(const SampleChunk& chunk, int i) {
   const bool met = chunk.met[i] != 0 && chunk.ray_weight[i] != 0;
   reach_.each_reached(chunk.film_x[i], chunk.film_y[i], [&](int pixel, double weight) {
     double* const sums = &sums_[stride_ * static_cast<size_t>(pixel)];
+    float* const rests = &rests_[stride_ * static_cast<size_t>(pixel)];
     for (size_t c = 0; c < means; ++c) {
       const bool is_light = plan_.columns[c]->pixel == AovPixel::Mean;
       const double value = chunk.aovs[c][i] * (is_light ? chunk.ray_weight[i] : 1.0f);
-      if (is_light || met) sums[c] += weight * value;
+      if (is_light || met) add_exactly(sums[c], rests[c], weight * value);
     }
-    sums[means] += weight;
+    add_exactly(sums[means], rests[means], weight);
     if (!met) return;
-    sums[means + 1] += weight;
+    add_exactly(sums[means + 1], rests[means + 1], weight);
     for (size_t m = 0; m < plan_.mattes.size(); ++m) {
       const auto id = static_cast<uint32_t>(chunk.aovs[plan_.mattes[m]][i]);
-      note(coverage_[m][static_cast<size_t>(pixel)], id, weight);
+      note(coverage_[m][static_cast<size_t>(pixel)], {id, 0, weight});
     }
   });
 }
@@ -85,10 +87,11 @@ const float* AovTile::nearest(int x, int y) const {
 
 void AovTile::save(ByteWriter& out) const {
   out.numbers(std::span(sums_));
+  out.numbers(std::span(rests_));
   for (const auto& matte : coverage_) {
     for (const std::vector<Coverage>& pixel : matte) {
       out.value(static_cast<uint32_t>(pixel.size()));
-      for (const Coverage& c : pixel) out.value(c.id), out.value(c.weight);
+      for (const Coverage& c : pixel) out.value(c);
     }
   }
   out.numbers(std::span(distance_));
@@ -98,19 +101,48 @@ void AovTile::save(ByteWriter& out) const {
 
 void AovTile::restore(ByteReader& in, std::span<const size_t> things) {
   in.numbers(std::span(sums_));
-  for (size_t matte = 0; matte < coverage_.size(); ++matte) {
-    for (std::vector<Coverage>& pixel : coverage_[matte]) {
-      pixel.clear();
-      for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) {
-        const auto id = in.value<uint32_t>();
-        if (id >= things[matte]) in.fail();
-        pixel.push_back({id, in.value<double>()});
-      }
-    }
-  }
+  in.numbers(std::span(rests_));
+  each_coverage(in, things, [](std::vector<Coverage>& pixel, const Coverage& c) { pixel.push_back(c); });
   in.numbers(std::span(distance_));
   in.numbers(std::span(nearest_));
   in.numbers(std::span(samples_));
+}
+
+/// Calls body(what covers the pixel here, something that was saved of it).
+template <class Body>
+void AovTile::each_coverage(ByteReader& in, std::span<const size_t> things, const Body& body) {
+  for (size_t matte = 0; matte < coverage_.size(); ++matte) {
+    for (std::vector<Coverage>& pixel : coverage_[matte]) {
+      for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) {
+        const auto c = in.value<Coverage>();
+        if (c.id >= things[matte]) in.fail();
+        body(pixel, c);
+      }
+    }
+  }
+}
+
+void AovTile::merge(ByteReader& in, std::span<const size_t> things) {
+  std::vector<double> sums(sums_.size());
+  std::vector<float> rests(rests_.size()), distance(distance_.size()), nearest(nearest_.size());
+  std::vector<int64_t> samples(samples_.size());
+  in.numbers(std::span(sums));
+  in.numbers(std::span(rests));
+  each_coverage(in, things, note);
+  in.numbers(std::span(distance));
+  in.numbers(std::span(nearest));
+  in.numbers(std::span(samples));
+  for (size_t i = 0; i < sums.size(); ++i) {
+    add_exactly(sums_[i], rests_[i], sums[i]);
+    rests_[i] += rests[i];
+  }
+  const size_t columns = plan_.columns.size() - plan_.means;
+  for (size_t pixel = 0; pixel < distance.size(); ++pixel) {
+    if (!(distance[pixel] < distance_[pixel])) continue;
+    distance_[pixel] = distance[pixel];
+    std::copy_n(&nearest[columns * pixel], columns, &nearest_[columns * pixel]);
+  }
+  for (size_t i = 0; i < samples.size(); ++i) samples_[i] += samples[i];
 }
 
 namespace {
@@ -205,11 +237,10 @@ class Resolver {
     std::vector<double> sum(n, 0.0);
     double all = 0, met = 0;
     film_.each_around(pixel, [&](size_t unit) {
-      const double* const s = tiles_[unit].sums(pixel.x, pixel.y);
-      if (!s) return;
-      const double w = film_.weight(unit);
-      for (size_t c = 0; c < n; ++c) sum[c] += w * s[static_cast<size_t>(layer.column) + c];
-      all += w * s[means], met += w * s[means + 1];
+      if (!tiles_[unit].reaches(pixel.x, pixel.y)) return;
+      const auto of = [&](size_t column) { return film_.weight(unit) * tiles_[unit].sum(pixel.x, pixel.y, column); };
+      for (size_t c = 0; c < n; ++c) sum[c] += of(static_cast<size_t>(layer.column) + c);
+      all += of(means), met += of(means + 1);
     });
     double weight = layer.row->pixel == AovPixel::Mean ? all : met;
     if (layer.row->pixel == AovPixel::SurfaceDirection)
@@ -223,13 +254,14 @@ class Resolver {
     std::vector<Coverage> found;
     double all = 0;
     film_.each_around(pixel, [&](size_t unit) {
-      const double* const s = tiles_[unit].sums(pixel.x, pixel.y);
-      if (!s) return;
+      const AovTile& tile = tiles_[unit];
+      if (!tile.reaches(pixel.x, pixel.y)) return;
       const double w = film_.weight(unit);
-      all += w * s[plan_.means];
-      for (const Coverage& c : tiles_[unit].coverage(matte, pixel.x, pixel.y)) note(found, hash_of[c.id], w * c.weight);
+      all += w * tile.sum(pixel.x, pixel.y, plan_.means);
+      for (const Coverage& c : tile.coverage(matte, pixel.x, pixel.y))
+        note(found, {hash_of[c.id], 0, w * (c.weight + static_cast<double>(c.rest))});
     });
-    for (Coverage& c : found) c.weight = all != 0 ? c.weight / all : 0;
+    for (Coverage& c : found) c.weight = all != 0 ? (c.weight + static_cast<double>(c.rest)) / all : 0;
     // Weights of some filters are negative, and so may be a sum of few.
     std::erase_if(found, [](const Coverage& c) { return !(c.weight > 0); });
     std::sort(found.begin(), found.end(), [](const Coverage& a, const Coverage& b) {
@@ -238,7 +270,7 @@ class Resolver {
     return found;
   }
 
-  /// Three layers of two ranks each: six things cover a pixel at most; the manifest; and what the numbers stand for.
+  /// Three layers of two ranks each: six things cover a pixel at most.
   void add_matte(const AovLayer& layer, size_t matte, const std::vector<IdName>& names) {
     constexpr size_t kRanks = 6;
     std::vector<uint32_t> hash_of;
@@ -256,17 +288,7 @@ class Resolver {
         out_.channels[first + 2 * r + 1].values[at] = static_cast<float>(found[r].weight);
       }
     });
-    const std::set<uint32_t> seen = numbers_seen(matte);
-    std::vector<std::string> manifest;
-    std::string numbers;
-    for (const uint32_t id : seen) {
-      manifest.push_back(names[id].name);
-      numbers += fmt::format("{}\"{}\":{{\"name\":{},\"where\":{}}}", numbers.empty() ? "{" : ",", id,
-                             json_text(names[id].name), json_text(names[id].where));
-    }
-    const std::vector<OutputMetadata> header = matte_header(layer.row->matte, manifest);
-    out_.header.insert(out_.header.end(), header.begin(), header.end());
-    out_.header.push_back({fmt::format("whit:{}s", layer.row->name), numbers.empty() ? "{}" : numbers + "}"});
+    out_.seen.push_back(numbers_seen(matte));
   }
 
   /// What is in the picture, of whatever number of things there may be in the scene.
@@ -275,7 +297,7 @@ class Resolver {
     for (int y = window_.min.y; y < window_.max.y; ++y) {
       for (int x = window_.min.x; x < window_.max.x; ++x) {
         film_.each_around({x, y}, [&](size_t unit) {
-          if (!tiles_[unit].sums(x, y)) return;
+          if (!tiles_[unit].reaches(x, y)) return;
           for (const Coverage& c : tiles_[unit].coverage(matte, x, y)) seen.insert(c.id);
         });
       }
@@ -306,11 +328,39 @@ class Resolver {
   AovPicture out_;
 };
 
+/// The manifest of a matte, and what its numbers stand for.
+std::vector<OutputMetadata> header_of(const AovRow& row, const std::vector<IdName>& names,
+                                      const std::set<uint32_t>& seen) {
+  std::vector<std::string> manifest;
+  std::string numbers;
+  for (const uint32_t id : seen) {
+    manifest.push_back(names[id].name);
+    numbers += fmt::format("{}\"{}\":{{\"name\":{},\"where\":{}}}", numbers.empty() ? "{" : ",", id,
+                           json_text(names[id].name), json_text(names[id].where));
+  }
+  std::vector<OutputMetadata> header = matte_header(row.matte, manifest);
+  header.push_back({fmt::format("whit:{}s", row.name), numbers.empty() ? "{}" : numbers + "}"});
+  return header;
+}
+
 }  // namespace
+
+void set_matte_headers(const Scene& scene, const AovPlan& plan, const StatementPlace& place, AovPicture& picture) {
+  size_t matte = 0;
+  for (const AovLayer& layer : plan.layers) {
+    if (!layer.row->matte) continue;
+    for (OutputMetadata& item : header_of(*layer.row, layer.row->names(scene, place), picture.seen.at(matte++))) {
+      std::erase_if(picture.header, [&](const OutputMetadata& old) { return old.name == item.name; });
+      picture.header.push_back(std::move(item));
+    }
+  }
+}
 
 AovPicture resolve_aovs(const Scene& scene, const AovPlan& plan, const StatementPlace& place,
                         const std::vector<AovTile>& tiles, const FilmUnits& film, const Box2i& window) {
-  return Resolver(scene, plan, tiles, film, window).run(place);
+  AovPicture picture = Resolver(scene, plan, tiles, film, window).run(place);
+  set_matte_headers(scene, plan, place, picture);
+  return picture;
 }
 
 }  // namespace whit

@@ -46,21 +46,21 @@ int TileGrid::own_unit(Vec2i pixel) const {
   return (at.y * columns + at.x) * colours + (colours == 1 ? 0 : (pixel.x + pixel.y) & 1);
 }
 
-TileSums::TileSums(Vec2i tile, const FilterTable& filter, int size, bool blocks, double* zeros)
+TileSums::TileSums(Vec2i tile, const FilterTable& filter, int size, bool blocks, TileMemory zeros)
     : reach_(tile, filter, size),
-      own_(zeros ? 0 : 4 * reach_.pixels()),
-      sums_(zeros ? zeros : own_.data()),
-      blocks_(blocks ? 4 * kBlocks * reach_.pixels() : 0) {}
+      blocks_(blocks ? kBlocks : 1),
+      own_sums_(zeros.sums ? 0 : numbers()),
+      own_rests_(zeros.rests ? 0 : numbers()),
+      sums_(zeros.sums ? zeros.sums : own_sums_.data()),
+      rests_(zeros.rests ? zeros.rests : own_rests_.data()) {}
 
 void TileSums::add(float film_x, float film_y, const RGB& radiance, int block) {
   const double value[4] = {radiance.x, radiance.y, radiance.z, 1};
-  float* const blocks = blocks_.empty() ? nullptr : &blocks_[4 * static_cast<size_t>(block)];
   reach_.each_reached(film_x, film_y, [&](int pixel, double weight) {
-    double* const sums = &sums_[4 * static_cast<size_t>(pixel)];
-    for (int c = 0; c < 4; ++c) sums[c] += weight * value[c];
-    if (!blocks) return;
-    float* const own = blocks + 4 * kBlocks * static_cast<size_t>(pixel);
-    for (int c = 0; c < 4; ++c) own[c] += static_cast<float>(weight * value[c]);
+    const size_t first = 4 * static_cast<size_t>(pixel * blocks_ + block);
+    double* const sums = &sums_[first];
+    float* const rests = &rests_[first];
+    for (int c = 0; c < 4; ++c) add_exactly(sums[c], rests[c], weight * value[c]);
   });
 }
 
@@ -86,10 +86,11 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
                                  const uint8_t* usable, const uint8_t* block) {
   int cell[kBatch + 1];  // the pixel and the block in one number, so that a run is one of both
   const TileReach& reach = reach_;
+  const int blocks = blocks_;
   for_lanes(n, [&](int i) {
     const int x = static_cast<int>(std::floor(film_x[i])), y = static_cast<int>(std::floor(film_y[i]));
     const bool inside = reach.holds(x, y) & (usable[i] != 0);
-    cell[i] = inside ? reach.number(x, y) * kBlocks : -1;
+    cell[i] = inside ? reach.number(x, y) * blocks : -1;
   });
   for (int i = 0; block && i < n; ++i) {
     if (cell[i] >= 0) cell[i] += block[i];
@@ -102,38 +103,53 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
       ++i;
       continue;
     }
-    double* const sums = &sums_[4 * static_cast<size_t>(at / kBlocks)];
+    double* const sums = &sums_[4 * static_cast<size_t>(at)];
+    float* const rests = &rests_[4 * static_cast<size_t>(at)];
     double sum[4] = {sums[0], sums[1], sums[2], sums[3]};
+    float rest[4] = {rests[0], rests[1], rests[2], rests[3]};
     for (; cell[i] == at; ++i) {
-      sum[0] += w * radiance.r[i], sum[1] += w * radiance.g[i], sum[2] += w * radiance.b[i];
-      sum[3] += w;
-    }
-    if (!blocks_.empty()) {
-      float* const own = &blocks_[4 * static_cast<size_t>(at)];
-      for (int c = 0; c < 4; ++c) own[c] += static_cast<float>(sum[c] - sums[c]);
+      const double value[4] = {w * radiance.r[i], w * radiance.g[i], w * radiance.b[i], w};
+      for (int c = 0; c < 4; ++c) add_exactly(sum[c], rest[c], value[c]);
     }
     std::copy_n(sum, 4, sums);
+    std::copy_n(rest, 4, rests);
   }
 }
 
 void TileSums::halve_blocks() {
-  for (size_t p = 0; p < blocks_.size(); p += 4 * kBlocks) {
-    float* const b = &blocks_[p];
-    for (size_t c = 0; c < 4; ++c) {
-      b[c] += b[4 + c], b[4 + c] = b[8 + c] + b[12 + c];
-      b[8 + c] = b[12 + c] = 0;
+  const auto join = [this](size_t to, size_t from) {
+    add_exactly(sums_[to], rests_[to], sums_[from]);
+    rests_[to] += rests_[from];
+  };
+  constexpr size_t kBlock = 4;  // numbers of one
+  for (size_t p = 0; p < numbers(); p += kBlocks * kBlock) {
+    for (size_t c = p; c < p + kBlock; ++c) {
+      join(c, c + kBlock), join(c + 2 * kBlock, c + 3 * kBlock);
+      sums_[c + kBlock] = sums_[c + 2 * kBlock], rests_[c + kBlock] = rests_[c + 2 * kBlock];
+      for (const size_t free : {c + 2 * kBlock, c + 3 * kBlock}) sums_[free] = 0, rests_[free] = 0;
     }
   }
 }
 
 void TileSums::save(ByteWriter& out) const {
-  out.numbers(std::span<const double>(sums_, 4 * reach_.pixels()));
-  out.numbers(std::span(blocks_));
+  out.numbers(std::span<const double>(sums_, numbers()));
+  out.numbers(std::span<const float>(rests_, numbers()));
 }
 
 void TileSums::restore(ByteReader& in) {
-  in.numbers(std::span(sums_, 4 * reach_.pixels()));
-  in.numbers(std::span(blocks_));
+  in.numbers(std::span(sums_, numbers()));
+  in.numbers(std::span(rests_, numbers()));
+}
+
+void TileSums::merge(ByteReader& in) {
+  std::vector<double> sums(numbers());
+  std::vector<float> rests(numbers());
+  in.numbers(std::span(sums));
+  in.numbers(std::span(rests));
+  for (size_t i = 0; i < sums.size(); ++i) {
+    add_exactly(sums_[i], rests_[i], sums[i]);
+    rests_[i] += rests[i];
+  }
 }
 
 void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
@@ -150,10 +166,10 @@ void resolve_film(const FilmUnits& film, float scale, Picture& picture) {
       const int x = picture.window.min.x + static_cast<int>(i);
       double sum[4] = {0, 0, 0, 0};
       film.each_in(columns[i], rows, [&](size_t unit) {
-        const double* s = film.sums[unit].at(x, y);
+        const auto s = film.sums[unit].at(x, y);
         if (!s) return;
         const double weight = film.weight(unit);
-        for (int c = 0; c < 4; ++c) sum[c] += weight * s[c];
+        for (size_t c = 0; c < 4; ++c) sum[c] += weight * (*s)[c];
       });
       for (int c = 0; c < 3; ++c) {
         const float value = sum[3] != 0 ? static_cast<float>(std::max(0.0, sum[c] / sum[3])) * scale : 0.0f;
@@ -167,9 +183,13 @@ Vec3d block_variance(const FilmUnits& film, Vec2i pixel) {
   constexpr int kBlocks = TileSums::kBlocks;
   double sum[kBlocks][4] = {};
   film.each_around(pixel, [&](size_t unit) {
-    const float* const s = film.sums[unit].blocks_at(pixel.x, pixel.y);
+    const TileSums& sums = film.sums[unit];
+    if (!sums.reaches(pixel.x, pixel.y)) return;
     const double weight = film.weight(unit);
-    for (int k = 0; s && k < 4 * kBlocks; ++k) sum[k / 4][k % 4] += weight * static_cast<double>(s[k]);
+    for (int b = 0; b < kBlocks; ++b) {
+      const TileSums::Sums s = sums.block_at(pixel.x, pixel.y, b);
+      for (size_t c = 0; c < 4; ++c) sum[b][c] += weight * s[c];
+    }
   });
   double all[4] = {0, 0, 0, 0};
   int blocks = 0;

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -107,17 +109,35 @@ struct TileGrid {
   }
 };
 
-/// Sums of the samples of one unit; and of four blocks of them, if wanted, from which the error can be told.
+/// Adds to a sum of which `rest` holds what its rounding lost (Knuth, The Art of Computer Programming 2, 4.2.2, theorem
+/// B). Sum and rest together have some 77 bits: the float that is made of them does not tell in which order numbers were
+/// added, nor in how many parts (docs/decisions.md).
+inline void add_exactly(double& sum, float& rest, double value) {
+  const double all = sum + value, of_value = all - sum;
+  rest += static_cast<float>((sum - (all - of_value)) + (value - of_value));
+  sum = all;
+}
+
+/// Where a tile's sums are: TileSums::numbers() doubles and as many floats, all 0.
+struct TileMemory {
+  double* sums = nullptr;
+  float* rests = nullptr;
+};
+
+/// Sums of the samples of one unit: all together; or, where the error is to be told, in four blocks.
 class TileSums {
  public:
   static constexpr int kTile = TileReach::kTile;
   static constexpr int kBlocks = 4;
+  using Sums = std::array<double, 4>;  ///< Of r, g, b and weights.
 
-  /// In memory of its own, or in `zeros`: numbers() doubles that are 0.
-  TileSums(Vec2i tile, const FilterTable& filter, int size = kTile, bool blocks = false, double* zeros = nullptr);
+  /// In memory of its own where none is given.
+  TileSums(Vec2i tile, const FilterTable& filter, int size = kTile, bool blocks = false, TileMemory zeros = {});
   TileSums(TileSums&&) = default;
   /// How many numbers a tile sums up.
-  static size_t numbers(const FilterTable& filter, int size) { return 4 * TileReach({0, 0}, filter, size).pixels(); }
+  static size_t numbers(const FilterTable& filter, int size, bool blocks) {
+    return 4 * (blocks ? kBlocks : 1) * TileReach({0, 0}, filter, size).pixels();
+  }
   /// Adds one sample: film position (continuous raster coordinates) and weighted radiance.
   void add(float film_x, float film_y, const RGB& radiance, int block = 0);
   /// Adds n samples in their order, those that are `usable`. `block` says which each belongs to; null without blocks.
@@ -126,28 +146,43 @@ class TileSums {
   /// Makes room for as many samples again: four blocks become the first two.
   void halve_blocks();
 
-  /// Sums at a pixel: (r, g, b, weight), or null outside the tile's reach.
-  const double* at(int x, int y) const {
-    return reach_.holds(x, y) ? &sums_[4 * static_cast<size_t>(reach_.number(x, y))] : nullptr;
+  /// Sums at a pixel. Nothing outside the tile's reach.
+  std::optional<Sums> at(int x, int y) const {
+    if (!reach_.holds(x, y)) return {};
+    Sums all = block_at(x, y, 0);
+    for (int b = 1; b < blocks_; ++b) {
+      const Sums more = block_at(x, y, b);
+      for (size_t c = 0; c < 4; ++c) all[c] += more[c];
+    }
+    return all;
   }
-  /// The same of each block, one after another: kBlocks times four floats.
-  const float* blocks_at(int x, int y) const {
-    return reach_.holds(x, y) ? &blocks_[4 * kBlocks * static_cast<size_t>(reach_.number(x, y))] : nullptr;
+  bool reaches(int x, int y) const { return reach_.holds(x, y); }
+  /// Those of one block, at a pixel within reach.
+  Sums block_at(int x, int y, int block) const {
+    const size_t first = 4 * static_cast<size_t>(reach_.number(x, y) * blocks_ + block);
+    Sums out;
+    for (size_t c = 0; c < 4; ++c) out[c] = sums_[first + c] + static_cast<double>(rests_[first + c]);
+    return out;
   }
 
   /// All of it to bytes, and back into sums of the same size.
   void save(ByteWriter& out) const;
   void restore(ByteReader& in);
+  /// Adds what another tile of the same size saved, of other samples.
+  void merge(ByteReader& in);
 
  private:
   static constexpr int kBatch = 256;  ///< So many samples are looked at together.
   void add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
                          const uint8_t* usable, const uint8_t* block);
+  size_t numbers() const { return 4 * reach_.pixels() * static_cast<size_t>(blocks_); }
 
   TileReach reach_;
-  std::vector<double> own_;
-  double* sums_;               ///< Double: a million floats of one size are added with an error of 1 %.
-  std::vector<float> blocks_;  ///< Differences between blocks need no more, and there are four.
+  int blocks_;
+  std::vector<double> own_sums_;
+  std::vector<float> own_rests_;
+  double* sums_;  ///< Of a pixel's blocks, pixel by pixel.
+  float* rests_;  ///< add_exactly()
 };
 
 /// The finished picture: linear RGB of the cropped window, row by row.

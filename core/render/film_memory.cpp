@@ -89,10 +89,10 @@ AovNumbers aov_numbers(const BoundScene& bound, const std::vector<std::string>& 
 /// Sums of a unit: the picture's, those of blocks, and AOVs'.
 double unit_bytes(const FilmSize& s, const AovNumbers& aovs, bool blocks) {
   const double columns = sizeof(int) * s.reach_width + Measured::kHeap;
-  double bytes = sizeof(TileSums) + columns + s.reach_pixels * (4 * sizeof(double));
-  if (blocks) bytes += s.reach_pixels * (4 * TileSums::kBlocks * sizeof(float)) + Measured::kHeap;
+  constexpr double kSum = sizeof(double) + sizeof(float);
+  double bytes = sizeof(TileSums) + columns + s.reach_pixels * (blocks ? TileSums::kBlocks : 1) * 4 * kSum;
   if (!aovs.any) return bytes;
-  bytes += sizeof(AovTile) + columns + s.reach_pixels * (aovs.means + 2) * sizeof(double) + 4 * Measured::kHeap;
+  bytes += sizeof(AovTile) + columns + s.reach_pixels * (aovs.means + 2) * kSum + 5 * Measured::kHeap;
   bytes += aovs.mattes * s.reach_pixels * (sizeof(std::vector<Coverage>) + Measured::kCovers);
   bytes += s.own_pixels * (sizeof(float) * (1 + aovs.nearest) + (aovs.statistics ? sizeof(int64_t) : 0));
   return bytes;

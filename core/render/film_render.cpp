@@ -24,8 +24,9 @@ namespace {
 constexpr int kChunk = 2048;
 /// Pixels on each side of what one thread renders at a time.
 constexpr int kTask = 16;
-/// The round of a filter that keeps to its pixel. Longer rounds keep rays together: 4 % of the time on scenes/mesh.pbrt.
-constexpr uint32_t kLongRound = 1024;
+/// Samples of a pixel that are taken before the next pixel's turn. Longer rounds keep rays together (4 % of the time on
+/// scenes/mesh.pbrt); a state can be saved between rounds only.
+constexpr uint32_t kRound = 1024;
 
 /// Processor seconds of this thread.
 double thread_seconds() {
@@ -60,9 +61,10 @@ TileGrid grid_over(const Box2i& pixels, bool adaptive) {
   return grid;
 }
 
-/// What a pass adds to a unit: the samples [have, want), and in which blocks.
+/// What a pass adds to a unit: the samples [have, want), and in which blocks; of a part of a picture, only those up to
+/// `until`, in the blocks of the whole.
 struct UnitPass {
-  uint32_t have = 0, want = 0;
+  uint32_t have = 0, want = 0, until = 0;
   bool doubled = false;  ///< As many again: they are the last two blocks.
   bool begun = false;    ///< The blocks are ready for them.
 
@@ -112,18 +114,20 @@ struct FilmRender::Impl {
     window.window = crop_pixels(window.resolution, options.crop_given ? options.crop : crop);
     sampled = sampled_pixels(scene, filter, window.window);
     grid = grid_over(sampled, options.adaptive);
-    const size_t numbers = TileSums::numbers(filter, grid.size);
+    const size_t numbers = TileSums::numbers(filter, grid.size, options.blocks);
     memory = ZeroPages<double>(numbers * grid.units());
+    rests = ZeroPages<float>(numbers * grid.units());
     sums.reserve(grid.units());
     if (aovs.any()) aov_tiles.reserve(grid.units());
     for (int y = 0; y < grid.rows; ++y) {
       for (int x = 0; x < grid.columns * grid.colours; ++x) {
         const Vec2i tile = grid.first + Vec2i(x / grid.colours, y);
-        sums.emplace_back(tile, filter, grid.size, options.blocks, memory.data() + numbers * sums.size());
+        const size_t at = numbers * sums.size();
+        sums.emplace_back(tile, filter, grid.size, options.blocks, TileMemory{memory.data() + at, rests.data() + at});
         if (aovs.any()) aov_tiles.emplace_back(aovs, tile, filter, grid.size);
       }
     }
-    have.assign(grid.units(), 0);
+    have.assign(grid.units(), first());
     pass.assign(grid.units(), {});
     task_locks = std::vector<std::mutex>(tasks());
   }
@@ -179,7 +183,8 @@ struct FilmRender::Impl {
     tasks_done = 0;
     for (size_t u = 0; u < pass.size(); ++u) {
       const uint32_t to = std::max(want[u], have[u]);
-      pass[u] = {have[u], to, options.blocks && have[u] > 0 && to == 2 * have[u]};
+      if (options.part) pass[u] = {0, to, std::min(to, options.part->last)};
+      else pass[u] = {have[u], to, to, options.blocks && have[u] > 0 && to == 2 * have[u]};
     }
   }
 
@@ -192,7 +197,7 @@ struct FilmRender::Impl {
     take_alpha_tests();
     const auto [from, to] = begin_task(task);
     for (uint32_t at = from; at < to && !stopped;) {
-      const uint32_t end = std::min(to, at / round * round + round);
+      const uint32_t end = std::min(to, at / kRound * kRound + kRound);
       add_round(worker, task, at, end);
       at = end;
       if (at < to) report_progress();
@@ -212,9 +217,9 @@ struct FilmRender::Impl {
     const std::lock_guard lock(task_locks[task]);
     uint32_t from = UINT32_MAX, to = 0;
     each_unit(task, [&](size_t u) {
-      if (have[u] == pass[u].want) return;
+      if (have[u] == pass[u].until) return;
       if (pass[u].doubled && !std::exchange(pass[u].begun, true)) sums[u].halve_blocks();
-      from = std::min(from, have[u]), to = std::max(to, pass[u].want);
+      from = std::min(from, have[u]), to = std::max(to, pass[u].until);
     });
     return {from, to};
   }
@@ -224,7 +229,7 @@ struct FilmRender::Impl {
     Chunk& chunk = chunks.local();
     const std::lock_guard lock(task_locks[task]);
     each_unit(task, [&](size_t u) {
-      const uint32_t first = std::max(from, have[u]), last = std::min(to, pass[u].want);
+      const uint32_t first = std::max(from, have[u]), last = std::min(to, pass[u].until);
       if (first >= last) return;
       const Box2i pixels = pixels_of(u);
       const int colour = colour_of(u);
@@ -293,13 +298,19 @@ struct FilmRender::Impl {
 
   /// What a film of the same state has in common with this.
   std::array<uint64_t, 6> layout() const {
-    return {static_cast<uint64_t>(grid.columns),  static_cast<uint64_t>(grid.rows), static_cast<uint64_t>(grid.size),
-            TileSums::numbers(filter, grid.size), options.blocks ? uint64_t{1} : 0, aovs.columns.size()};
+    return {static_cast<uint64_t>(grid.columns), static_cast<uint64_t>(grid.rows),
+            static_cast<uint64_t>(grid.size),    TileSums::numbers(filter, grid.size, options.blocks),
+            options.blocks ? uint64_t{1} : 0,    aovs.columns.size()};
   }
+
+  /// Of each unit's samples, the first that is to be taken, and how many have been.
+  uint32_t first() const { return options.part ? options.part->first : 0; }
+  uint32_t taken(size_t u) const { return have[u] - first(); }
 
   void save(ByteWriter& out) const {
     const std::lock_guard passing(pass_lock);
     out.value(layout());
+    out.value(first());
     out.text(note);
     {
       const std::lock_guard counting(statistics_lock);
@@ -312,7 +323,7 @@ struct FilmRender::Impl {
       each_unit(task, [&](size_t u) {
         out.value(have[u]);
         out.value(pass[u]);
-        if (have[u] == 0) return;
+        if (taken(u) == 0) return;
         sums[u].save(out);
         if (aovs.any()) aov_tiles[u].save(out);
       });
@@ -320,23 +331,46 @@ struct FilmRender::Impl {
   }
 
   bool restore(ByteReader& in) {
-    if (in.value<decltype(layout())>() != layout()) return false;
+    if (in.value<decltype(layout())>() != layout() || in.value<uint32_t>() != first()) return false;
     note = in.text();
     statistics = in.value<RenderStatistics>();
     seconds = in.value<double>();
     worker_seconds = in.value<double>();
     const std::vector<size_t> things = things_of_mattes();
-    for (size_t task = 0; task < tasks() && in.ok(); ++task) {
-      each_unit(task, [&](size_t u) {
-        have[u] = in.value<uint32_t>();
-        pass[u] = in.value<UnitPass>();
-        if (have[u] < pass[u].have || have[u] > pass[u].want) in.fail();
-        if (have[u] == 0) return;
-        sums[u].restore(in);
-        if (aovs.any()) aov_tiles[u].restore(in, things);
-      });
-    }
+    each_unit_of_all(in, [&](size_t u) {
+      have[u] = in.value<uint32_t>();
+      pass[u] = in.value<UnitPass>();
+      if (have[u] < std::max(pass[u].have, first()) || have[u] > pass[u].until) in.fail();
+      if (!in.ok() || taken(u) == 0) return;
+      sums[u].restore(in);
+      if (aovs.any()) aov_tiles[u].restore(in, things);
+    });
     return in.ok() && in.rest().empty();
+  }
+
+  bool merge(ByteReader& in) {
+    if (in.value<decltype(layout())>() != layout()) return false;
+    const auto from = in.value<uint32_t>();
+    in.text();
+    statistics.add(in.value<RenderStatistics>());
+    seconds += in.value<double>();
+    worker_seconds = worker_seconds + in.value<double>();
+    const std::vector<size_t> things = things_of_mattes();
+    each_unit_of_all(in, [&](size_t u) {
+      const auto to = in.value<uint32_t>();
+      in.value<UnitPass>();
+      if (have[u] != from || to < from) in.fail();
+      if (!in.ok() || to == from) return;
+      have[u] = to;
+      sums[u].merge(in);
+      if (aovs.any()) aov_tiles[u].merge(in, things);
+    });
+    return in.ok() && in.rest().empty();
+  }
+
+  template <class Body>
+  void each_unit_of_all(const ByteReader& in, const Body& body) const {
+    for (size_t task = 0; task < tasks() && in.ok(); ++task) each_unit(task, body);
   }
 
   /// How many numbers there are in each of the columns that cryptomattes are made of.
@@ -360,8 +394,8 @@ struct FilmRender::Impl {
     std::vector<float> rgb;
     for (int y = box.min.y; y < box.max.y; ++y) {
       for (int x = box.min.x; x < box.max.x; ++x) {
-        const double* s = sums[static_cast<size_t>(grid.own_unit({x, y}))].at(x, y);
-        for (int c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? static_cast<float>(s[c] / s[3]) : 0.0f);
+        const TileSums::Sums s = *sums[static_cast<size_t>(grid.own_unit({x, y}))].at(x, y);
+        for (size_t c = 0; c < 3; ++c) rgb.push_back(s[3] != 0 ? static_cast<float>(s[c] / s[3]) : 0.0f);
       }
     }
     options.tile_done(box, rgb);
@@ -377,17 +411,17 @@ struct FilmRender::Impl {
   std::vector<double> weights() const {
     if (std::all_of(have.begin(), have.end(), [&](uint32_t n) { return n == have.front(); })) return {};
     std::vector<double> w(have.size());
-    for (size_t u = 0; u < w.size(); ++u) w[u] = have[u] > 0 ? 1.0 / have[u] : 0.0;
+    for (size_t u = 0; u < w.size(); ++u) w[u] = taken(u) > 0 ? 1.0 / taken(u) : 0.0;
     return w;
   }
 
-  Unit unit(size_t u) const { return {pixels_of(u), colour_of(u), have[u]}; }
+  Unit unit(size_t u) const { return {pixels_of(u), colour_of(u), taken(u)}; }
 
   double samples_per_pixel() const {
     double samples = 0, pixels = 0;
     for (size_t u = 0; u < have.size(); ++u) {
       const auto area = static_cast<double>(unit(u).area());
-      samples += area * have[u], pixels += area;
+      samples += area * taken(u), pixels += area;
     }
     return pixels > 0 ? samples / pixels : 0.0;
   }
@@ -397,7 +431,7 @@ struct FilmRender::Impl {
     double samples = 0, all = 0;
     for (size_t u = 0; u < have.size(); ++u) {
       const auto area = static_cast<double>(unit(u).area());
-      samples += area * have[u], all += area * std::max(have[u], pass[u].want);
+      samples += area * taken(u), all += area * (std::max(have[u], pass[u].until) - first());
     }
     return all > 0 ? samples / all : 1.0;
   }
@@ -407,7 +441,6 @@ struct FilmRender::Impl {
   const Scene& scene;
   RenderOptions options;
   FilterTable filter;
-  const uint32_t round = filter.is_own_pixel() ? kLongRound : kRound;
   const AovPlan aovs;
   tbb::enumerable_thread_specific<Worker> workers;
   tbb::enumerable_thread_specific<Chunk> chunks;
@@ -415,6 +448,7 @@ struct FilmRender::Impl {
   Box2i sampled;
   TileGrid grid;
   ZeroPages<double> memory;        ///< Of the sums.
+  ZeroPages<float> rests;          ///< Likewise.
   std::vector<TileSums> sums;      ///< By unit.
   std::vector<AovTile> aov_tiles;  ///< As many, or none.
   std::vector<uint32_t> have;      ///< Samples per pixel of each unit.
@@ -546,8 +580,18 @@ uint32_t FilmRender::wanted() const {
   return most;
 }
 
+FilmPart FilmRender::part() const {
+  const Impl& of = *impl_;
+  FilmPart part{of.window.resolution, of.window.window, {}};
+  if (of.options.adaptive) return part;
+  const uint32_t all = std::max(static_cast<uint32_t>(of.scene.samples_per_pixel), wanted());
+  part.samples = of.options.part.value_or(SampleRange{0, all, all});
+  return part;
+}
+
 void FilmRender::save(ByteWriter& out) const { impl_->save(out); }
 bool FilmRender::restore(ByteReader& in) { return impl_->restored = impl_->restore(in); }
+bool FilmRender::merge(ByteReader& in) { return impl_->merge(in); }
 
 std::vector<FilmRender::Unit> FilmRender::units() const {
   std::vector<Unit> units;

@@ -1,7 +1,8 @@
 // A picture that grows: passes add samples to those that are there.
 //
 // The film is cut into units that count their samples by themselves: tiles of 16 x 16 pixels; or, for renders that give
-// more samples where they are needed, the two colours of a chessboard of pixels in tiles of 8 x 8. A pixel is the mean
+// more samples where they are needed, the two colours of a chessboard of pixels in tiles of 8 x 8. However passes divide
+// the samples, the picture has the same bits. A pixel is the mean
 // over the film of what the filter reaches, each unit's samples weighed by one over their number, so that units with
 // many pull no filter their way.
 #pragma once
@@ -15,9 +16,12 @@
 
 namespace whit {
 
-/// Where filters reach beyond their pixel, samples are added in rounds of so many for each pixel of a unit: passes that
-/// end at multiples of it give the same bits as one. Without such a filter all passes do.
-inline constexpr uint32_t kRound = 64;
+/// What a film is of a picture.
+struct FilmPart {
+  Vec2i resolution{0, 0};  ///< Of the full picture.
+  Box2i window{};          ///< Of its pixels: min inclusive, max exclusive.
+  SampleRange samples{};   ///< Of each pixel; of none where units have different numbers of samples.
+};
 
 class FilmRender {
  public:
@@ -44,9 +48,14 @@ class FilmRender {
   /// Makes a film on which nothing was rendered what another was of which this is the state: one of the same scene and
   /// options. False, and the film is of no use, when it is not.
   bool restore(ByteReader& in);
+  /// Adds what another film saved: one of the same scene and options, but for RenderOptions::part, whose samples come
+  /// after those that there are, in every unit. The picture has the bits of a render of all of them, whatever the parts.
+  /// False, and the film is of no use, when it is not of that kind.
+  bool merge(ByteReader& in);
   /// Ends the pass that was under way in a state that was restored; what comes of it has the bits that it would have had
   /// there. As extend().
   bool go_on();
+  FilmPart part() const;
   /// Whether it was restored; and the note of the last pass.
   bool restored() const;
   const std::string& note() const;

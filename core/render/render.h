@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "core/render/aov_film.h"
@@ -11,6 +12,11 @@
 #include "core/scene/scene.h"
 
 namespace whit {
+
+/// The samples [first, last) of each pixel's `whole`.
+struct SampleRange {
+  uint32_t first = 0, last = 0, whole = 0;
+};
 
 struct RenderOptions {
   int threads = 0;                ///< 0: one per core.
@@ -25,8 +31,9 @@ struct RenderOptions {
   /// Called from any worker when a tile's own samples are done: its window and linear RGB, row by row, without what
   /// the neighbours' samples add within the filter's reach. For previews.
   std::function<void(const Box2i&, std::span<const float>)> tile_done{};
-  FilmKeeper* keeper = nullptr;  ///< Keeps the film's state meanwhile, and may have an earlier one's.
-  uint32_t more_samples = 0;     ///< Beyond those that the scene, or the film that was kept, was to have.
+  FilmKeeper* keeper = nullptr;       ///< Keeps the film's state meanwhile, and may have an earlier one's.
+  std::optional<SampleRange> part{};  ///< Of the samples, these alone: FilmRender::merge() makes a whole of parts.
+  uint32_t more_samples = 0;          ///< Beyond those that the scene, or the film that was kept, was to have.
 };
 
 struct RenderResult {
@@ -43,6 +50,9 @@ struct RenderResult {
 
 /// The pixels a render covers: the film's crop, or the one given; x1 and y1 exclusive.
 Box2i crop_pixels(const Vec2i& resolution, const double crop[4]);
+
+/// The other way: the window, as fractions of the picture, of which crop_pixels() makes these pixels.
+void pixel_crop(const Box2i& pixels, const Vec2i& resolution, double (&crop)[4]);
 
 /// Renders. The picture has the same bits for any number of threads and any crop.
 RenderResult render(const Scene& scene, const RenderOptions& options);

@@ -10,35 +10,17 @@
 #include <mutex>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "core/render/film_keeper.h"
-#include "core/session/session.h"
+#include "core/session/checkpoint_file.h"
 
 namespace whit {
-
-/// What a render is of, part by part: what each is, as messages call it, and its value.
-struct RenderIdentity {
-  struct Part {
-    std::string what, value;
-    bool operator==(const Part&) const = default;
-  };
-  std::vector<Part> parts;
-
-  void add(std::string what, std::string value) { parts.push_back({std::move(what), std::move(value)}); }
-};
-
-/// The program's own bytes, those of the scene's text and of every file that it reads.
-RenderIdentity identity_of(const std::string& scene, const ParsedFile& file);
-
-/// "" or the first difference in words: "the seed was 1 and is 2".
-std::string difference(const RenderIdentity& was, const RenderIdentity& is);
 
 class Checkpoint final : public FilmKeeper {
  public:
   using Seconds = std::chrono::duration<double>;
   /// Will write to `path` every so many seconds, and at the end.
-  Checkpoint(std::string path, Seconds every, RenderIdentity identity);
+  Checkpoint(std::string path, Seconds every, RenderIdentity identity, RenderCommand command);
   ~Checkpoint() override;
   Checkpoint(const Checkpoint&) = delete;
   Checkpoint& operator=(const Checkpoint&) = delete;
@@ -72,6 +54,7 @@ class Checkpoint final : public FilmKeeper {
   const std::string path_;
   const Seconds every_;
   const RenderIdentity identity_;
+  const RenderCommand command_;
   std::string kept_;  ///< The state of a film that resume() read.
   bool fits_ = true;
   std::thread writer_;

@@ -1,5 +1,5 @@
 // libFuzzer entry: any bytes between the first word of a checkpoint and a checksum that is right are what a render goes on
-// from. They are refused, or are the state of a film, of which a picture can be made. As everybody's checksum is right here,
+// from, or a part of a picture. They are refused, or are the state of a film, of which a picture can be made. As everybody's checksum is right here,
 // what the state says is not trusted to be of a film that there was.
 #include <algorithm>
 #include <cstring>
@@ -7,6 +7,7 @@
 #include "core/image/checksum.h"
 #include "core/render/film_render.h"
 #include "core/session/checkpoint.h"
+#include "core/session/parts.h"
 #include "tests/fuzz/shared/fuzz.h"
 
 namespace {
@@ -47,10 +48,13 @@ const std::string& true_state() {
   static const std::string state = [] {
     whit::FilmRender film(*world().built.scene, options());
     require(film.extend(4));
-    std::string bytes(1 + sizeof(uint32_t), '\0');  // Not complete, and no parts of an identity.
+    std::string bytes;
     whit::ByteWriter out([&](const void* from, size_t n) { bytes.append(static_cast<const char*>(from), n); });
+    whit::CheckpointHead head;
+    head.command = {"/", "scene.pbrt", {"--spp", "4"}}, head.part = film.part();
+    head.save(out);
     film.save(out);
-    return bytes;
+    return bytes.substr(std::string_view("whit checkpoint\n").size());
   }();
   return state;
 }
@@ -61,10 +65,15 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static whit::fuzz::MemoryFile file;
   const std::string bytes = framed(data, size);
   file.set(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
-  whit::Checkpoint checkpoint("/dev/null/nowhere", whit::Checkpoint::Seconds(0), {});
+  whit::Checkpoint checkpoint("/dev/null/nowhere", whit::Checkpoint::Seconds(0), {}, {});
   if (checkpoint.resume(file.path()).trouble != whit::Checkpoint::Trouble::None) return 0;
   whit::FilmRender film(*world().built.scene, options());
   if (checkpoint.begin(film)) require(film.result().picture.rgb.size() == 3 * 8 * 8);
+  whit::plan_parts({file.path(), file.path()});
+  const whit::CheckpointFile kept(file.path());
+  whit::ByteReader in(kept.state);
+  whit::FilmRender joined(*world().built.scene, options());
+  if (joined.merge(in)) require(joined.result().picture.rgb.size() == 3 * 8 * 8);
   return 0;
 }
 

@@ -28,7 +28,8 @@ double error_of_mean(const FilterTable& filter, int n, const Value& value) {
     for (int k = 0; k < kBatch; ++k) r[k] = value(i + k), exact += static_cast<long double>(r[k]);
     sums.add(kBatch, at.data(), at.data(), {r.data(), r.data(), r.data()}, usable.data());
   }
-  const long double mean = static_cast<long double>(sums.at(8, 8)[0]) / static_cast<long double>(sums.at(8, 8)[3]);
+  const long double mean =
+      static_cast<long double>((*sums.at(8, 8))[0]) / static_cast<long double>((*sums.at(8, 8))[3]);
   return std::abs(static_cast<double>(mean / (exact / n) - 1));
 }
 

@@ -142,7 +142,7 @@ TEST(TileSums, VarianceIsThatOfTheMeanOfFourBlocks) {
   sums[0].halve_blocks();
   // 1.5 and 3.5 of equal weight: ((1)^2 / 2 + (1)^2 / 2) / 1.
   EXPECT_NEAR(variance().x, 1, 1e-6);
-  EXPECT_EQ(sums[0].at(3, 3)[3], 8);
+  EXPECT_EQ((*sums[0].at(3, 3))[3], 8);
 }
 
 }  // namespace

@@ -114,6 +114,68 @@ TEST(FilmStates, SixtyFourAndAsManyAgainAsMakeTwoHundredAndFiftySix) {
   }
 }
 
+/// The state of some samples of 100.
+std::string part_of(const World& of, RenderOptions options, uint32_t first, uint32_t last) {
+  options.part = SampleRange{first, last, 100};
+  FilmRender film(of.scene(), options);
+  EXPECT_TRUE(film.extend(100));
+  return state_of(film);
+}
+
+bool merge(FilmRender& film, const std::string& state) {
+  ByteReader in(state);
+  return film.merge(in);
+}
+
+TEST(FilmStates, PartsAreOnePicture) {
+  // Parts that begin and end anywhere, with all kinds of layers: the bits are those of one render.
+  for (const char* filter : {"", kGaussian}) {
+    const World of = film_world(filter, "random");
+    for (const bool layers : {false, true}) {
+      const RenderOptions options = options_for(layers, false, layers);
+      FilmRender whole(of.scene(), options), merged(of.scene(), options);
+      ASSERT_TRUE(whole.extend(100));
+      for (const auto& [first, last] : {std::pair{0, 7}, {7, 64}, {64, 65}, {65, 100}})
+        ASSERT_TRUE(merge(merged, part_of(of, options, static_cast<uint32_t>(first), static_cast<uint32_t>(last))));
+      EXPECT_EQ(values_of(merged), values_of(whole)) << filter << layers;
+      EXPECT_EQ(merged.result().statistics.camera_samples, whole.result().statistics.camera_samples);
+      EXPECT_EQ(merged.result().samples_per_pixel, 100);
+    }
+  }
+}
+
+TEST(FilmStates, PartsThatDoNotFollowEachOtherAreRefused) {
+  const World of = film_world("", "random"), filtered = film_world(kGaussian, "random");
+  const std::string first = part_of(of, {}, 0, 20), third = part_of(of, {}, 30, 100);
+  FilmRender missing(of.scene(), {}), twice(of.scene(), {}), other(filtered.scene(), {}), late(of.scene(), {});
+  EXPECT_TRUE(merge(missing, first) && !merge(missing, third));
+  EXPECT_TRUE(merge(twice, first) && !merge(twice, first));
+  EXPECT_FALSE(merge(other, first));
+  EXPECT_FALSE(merge(late, third));
+  for (const size_t size : {size_t{0}, size_t{7}, first.size() / 2, first.size() - 1}) {
+    FilmRender cut(of.scene(), {});
+    EXPECT_FALSE(merge(cut, first.substr(0, size))) << size;
+  }
+}
+
+TEST(FilmStates, APartIsAPictureOfItsSamples) {
+  // Under a constant sky alone every sample of a pixel beside the ball is the sky's radiance, whichever are taken; and a
+  // part can be stopped and gone on with as a whole can.
+  const World of = film_world("", "random");
+  RenderOptions options;
+  options.part = SampleRange{30, 40, 100};
+  FilmRender film(of.scene(), options), on(of.scene(), options), whole(of.scene(), {});
+  ASSERT_TRUE(film.extend(100));
+  const Picture picture = film.picture();
+  EXPECT_EQ(RGB(picture.rgb[0], picture.rgb[1], picture.rgb[2]), RGB(1, 2, 3));
+  EXPECT_EQ(film.result().samples_per_pixel, 10);
+  EXPECT_EQ(film.result().share, 1);
+  EXPECT_FALSE(restore(whole, state_of(film)));
+  ASSERT_TRUE(restore(on, state_of(film)));
+  ASSERT_TRUE(on.go_on() && on.extend(100));
+  EXPECT_EQ(on.picture().rgb, picture.rgb);
+}
+
 TEST(FilmStates, OthersAreRefused) {
   const World of = film_world("", "sobol"), filtered = film_world(kGaussian, "sobol");
   FilmRender film(of.scene(), {}), other(filtered.scene(), {}), adaptive(of.scene(), options_for(true, true, false)),

@@ -19,6 +19,7 @@ int lsp_command(const Arguments& args);      ///< whit lsp
 int explain_command(const Arguments& args);  ///< whit explain SCENE
 int cost_command(const Arguments& args);     ///< whit cost SCENE
 int import_command(const Arguments& args);   ///< whit import MODEL -o SCENE
+int merge_command(const Arguments& args);    ///< whit merge PARTS... -o PICTURE
 int diff_command(const Arguments& args);     ///< whit diff A B
 int bench_command(const Arguments& args);    ///< whit bench [SCENES...]
 int help_command(const Arguments& args);     ///< whit help [[KIND] NAME | --json]

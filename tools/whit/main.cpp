@@ -29,6 +29,8 @@ const std::vector<Command>& commands() {
       {"explain", explain_command, "explain SCENE [--json]", "show the effect plan: what is simulated, and why"},
       {"cost", cost_command, "cost SCENE [--time 60s] [--html F]", "show what accuracy costs in time"},
       {"import", import_command, "import MODEL [-o SCENE.pbrt]", "write a glTF model as a scene to edit"},
+      {"merge", merge_command, "merge PARTS... [-o PICTURE]",
+       "join parts of a picture that were rendered by themselves"},
       {"diff", diff_command, "diff A B [--noise] [--html F]", "say whether two pictures or folders of them differ"},
       {"bench", bench_command, "bench [SCENES...] [--json]", "measure rendering speed"},
       {"help", help_command, "help [[KIND] NAME | --json]", "explain a command, plugin, statement, effect or AOV"},

@@ -78,6 +78,11 @@ int render_command(const Arguments& args) {
     return kFileError;
   }
   if (settings.cat || settings.toply) return print_normal_form(settings);
+  before.flags = reading_flags.elapsed();
+  return render_scenes(settings, before);
+}
+
+int render_scenes(const RenderSettings& settings, BeforeScene before) {
   if (!settings.max_memory.empty()) set_memory_limit(size_of(settings.max_memory));
   std::unique_ptr<tbb::global_control> threads;
   if (settings.threads > 0) {
@@ -85,7 +90,7 @@ int render_command(const Arguments& args) {
                                                     static_cast<size_t>(settings.threads));
   }
   RenderStats stats(settings.scenes.size());
-  before.flags = reading_flags.elapsed();
+  int code = kDone;
   for (const std::string& scene : settings.scenes) {
     if (code = render_file(settings, scene, before, stats); code != kDone) break;
     before = {};

@@ -22,7 +22,9 @@ namespace {
 Arguments split_lists(const Arguments& args) {
   Arguments out;
   for (const std::string& arg : args) {
-    const auto is_list = [](const std::string& flag) { return flag == "--cropwindow" || flag == "--pixel"; };
+    const auto is_list = [](const std::string& flag) {
+      return flag == "--cropwindow" || flag == "--crop-pixels" || flag == "--pixel";
+    };
     const size_t equals = arg.find('=');
     std::string rest = arg;
     if (equals != std::string::npos && is_list(arg.substr(0, equals))) {
@@ -66,18 +68,18 @@ const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose", "--san
 const std::vector<std::string> kAfterSamples{"scenes",     "--samples", "--time-limit",     "--view",  "--ocio",
                                              "--exposure", "--type",    "--texture-memory", "--strict"};
 
-/// The command without them, so that equal pictures are equal files.
-std::string picture_command(const Arguments& args) {
+/// The command's words without them, so that equal pictures are equal files.
+Arguments picture_words(const Arguments& args) {
   const std::vector<std::string>&with_value = kBesideWithValue, &alone = kBeside;
   const auto is_in = [](const std::vector<std::string>& names, const std::string& word) {
     return std::find(names.begin(), names.end(), word.substr(0, word.find('='))) != names.end();
   };
-  std::string command = "whit";
+  Arguments words;
   for (size_t i = 0; i < args.size(); ++i) {
     if (is_in(with_value, args[i])) i += args[i].find('=') == std::string::npos;
-    else if (!is_in(alone, args[i])) command.append(" ").append(args[i]);
+    else if (!is_in(alone, args[i])) words.push_back(args[i]);
   }
-  return command;
+  return words;
 }
 
 std::string text_of(const FlagTarget& target) {
@@ -131,6 +133,9 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        {.delimiter = ',', .offers = aov_names}},
       {"--nthreads", &s.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
       {"--cropwindow", &s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]", {.count = 4}},
+      {"--crop-pixels", &s.crop_pixels, "The same in pixels: x0 x1 y0 y1, from x0 to the one before x1", {.count = 4}},
+      {"--sample-range", &s.sample_range,
+       "Of each pixel's samples those from a to the one before b: a:b. With --checkpoint a part for whit merge"},
       {"--spp", &s.spp, "Samples per pixel, instead of the scene's", {.least = 1, .most = 1 << 30}},
       {"--footprint-spp",
        &s.footprint_spp,
@@ -224,12 +229,31 @@ std::string usage_problem(const RenderSettings& s, const CheckpointFlags& c) {
   return {};
 }
 
-/// A flag whose values make no sense is wrong usage.
-std::string usage_problem(const RenderSettings& s) {
+/// The same of the flags that render a part of a picture.
+std::string part_problem(const RenderSettings& s) {
   if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
                            s.crop[2] >= 0 && s.crop[3] <= 1)) {
     return "--cropwindow needs x0 < x1 and y0 < y1 within [0,1]";
   }
+  const std::vector<int>& c = s.crop_pixels;
+  if (!c.empty() && !(c[0] >= 0 && c[0] < c[1] && c[2] >= 0 && c[2] < c[3]))
+    return "--crop-pixels needs 0 <= x0 < x1 and 0 <= y0 < y1";
+  if (!s.crop.empty() + !c.empty() + !s.pixel.empty() > 1)
+    return "--cropwindow, --crop-pixels and --pixel each say which pixels to render: one of them will do";
+  if (s.sample_range.empty()) return {};
+  if (!samples_of(s.sample_range, 1)) {
+    return fmt::format("--sample-range: \"{}\" is no range; write 0:64 for samples 0 to 63, or 64: for the rest",
+                       s.sample_range);
+  }
+  if (s.target.any()) return "--sample-range says which samples to take, --target-error and --time-limit how far to go";
+  if (!s.checkpoint.samples.empty()) return "--samples adds to a whole picture, --sample-range takes a part of one";
+  if (!s.debug_pixel.empty()) return "--debug-pixel makes no picture that --sample-range could be of";
+  return {};
+}
+
+/// A flag whose values make no sense is wrong usage.
+std::string usage_problem(const RenderSettings& s) {
+  if (std::string problem = part_problem(s); !problem.empty()) return problem;
   if (!s.output.outfile.empty() && s.scenes.size() > 1) {
     return "--outfile with several scenes would write them over each other";
   }
@@ -281,6 +305,19 @@ uint32_t CheckpointFlags::more_samples() const {
   return error == std::errc() && stop == end && n <= kMost ? n : 0;
 }
 
+std::optional<SampleRange> samples_of(const std::string& text, uint32_t whole) {
+  const size_t colon = text.find(':');
+  if (colon == std::string::npos || text.size() < 2) return {};
+  SampleRange range{0, whole, whole};
+  const auto read = [&](size_t first, size_t end, uint32_t& number) {
+    if (first == end) return true;
+    const auto [stop, error] = std::from_chars(text.data() + first, text.data() + end, number);
+    return error == std::errc() && stop == text.data() + end;
+  };
+  if (!read(0, colon, range.first) || !read(colon + 1, text.size(), range.last)) return {};
+  return range;
+}
+
 std::vector<int> numbers_of(const std::string& text) {
   std::vector<int> numbers;
   const char *at = text.data(), *end = at + text.size();
@@ -305,7 +342,8 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   std::string problem = take_stats_file(words, settings.stats_file);
   if (problem.empty() && !parse_arguments(command, words, code)) return false;
   for (const std::string& a : args) settings.command_line += (settings.command_line.empty() ? "whit " : " ") + a;
-  settings.picture_command = picture_command(words);
+  settings.picture_words = picture_words(words);
+  settings.picture_command = fmt::format("whit {}", fmt::join(settings.picture_words, " "));
   settings.of_samples = flags_of_samples(command.flags);
   if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,11 +32,16 @@ struct CheckpointFlags {
   uint32_t more_samples() const;
 };
 
+struct PartsPlan;
+
 struct RenderSettings {
   std::vector<std::string> scenes;
   OutputRequest output;
   std::vector<double> crop;
+  std::vector<int> crop_pixels;  ///< x0 x1 y0 y1, ends exclusive.
   std::vector<int> pixel;
+  std::string sample_range;          ///< As given: samples_of(); "" for all.
+  const PartsPlan* parts = nullptr;  ///< Of which the picture is made, in the place of samples.
   std::string debug_pixel;
   EffectFlags effects;
   ModelFlags model;
@@ -53,6 +59,7 @@ struct RenderSettings {
   std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
   std::string command_line;
   std::string picture_command;  ///< The same for the header of pictures: without what they do not depend on.
+  Arguments picture_words;      ///< The words of that.
   /// Flags that samples depend on, and their values as text: "" where they are not given.
   std::vector<std::pair<std::string, std::string>> of_samples;
 };
@@ -60,6 +67,10 @@ struct RenderSettings {
 /// Reads the arguments into settings. Returns true when the command should go on; otherwise `code` is what to
 /// exit with, and what is wrong has been printed.
 bool read_render_flags(const Arguments& args, RenderSettings& settings, int& code);
+
+/// The samples of "a:b", "a:" or ":b": from a on, b being the first that is not meant, of `whole` that a pixel has. Nothing
+/// when the text is anything else; and a range may be empty or reach beyond those that there are.
+std::optional<SampleRange> samples_of(const std::string& text, uint32_t whole);
 
 /// The two or three whole numbers of "x,y,sample"; none when the text is anything else.
 std::vector<int> numbers_of(const std::string& text);

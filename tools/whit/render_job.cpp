@@ -22,6 +22,7 @@
 #include "core/scene/problems.h"
 #include "core/session/checkpoint.h"
 #include "core/session/memory.h"
+#include "core/session/parts.h"
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/quantities.h"
@@ -246,9 +247,43 @@ class RenderJob {
     times_.output += connecting.elapsed();
     times_.ready = times_.program + times_.flags + world_started_.elapsed();
     if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
-    const RenderedWorld rendered = trace(built, options);
+    if (int code = check_part(*built.scene, options); code != kDone) return code;
+    const RenderedWorld rendered = settings_.parts ? join(built, options) : trace(built, options);
     if (int code = write_and_say(built, rendered, output, viewer); code != kDone) return code;
     return rendered.result.complete ? kDone : say_stopped(rendered.result);
+  }
+
+  /// Takes the part of the picture that the flags ask for, which must be one; and parts that are joined must make up all
+  /// of it.
+  int check_part(const Scene& scene, RenderOptions& options) const {
+    const Vec2i size = scene.camera().film.resolution;
+    const std::vector<int>& crop = settings_.crop_pixels;
+    std::string problem;
+    if (!crop.empty() && (crop[1] > size.x || crop[3] > size.y))
+      problem = fmt::format("--crop-pixels: the picture has {} x {} pixels", size.x, size.y);
+    if (!settings_.sample_range.empty()) {
+      options.part = samples_of(settings_.sample_range, static_cast<uint32_t>(scene.samples_per_pixel));
+      const SampleRange& range = *options.part;
+      if (range.first >= range.last || range.last > range.whole) {
+        problem = fmt::format("--sample-range: {} is none of the {} samples of a pixel, which are 0:{}",
+                              settings_.sample_range, range.whole, range.whole);
+      }
+    }
+    if (settings_.parts && problem.empty()) problem = identity_problem(*settings_.parts, identity());
+    if (settings_.parts && problem.empty()) problem = cover_problem(*settings_.parts, window_of(scene, options));
+    if (problem.empty()) return kDone;
+    say("whit: " + problem);
+    return kUsage;
+  }
+
+  static Box2i window_of(const Scene& scene, const RenderOptions& options) {
+    double crop[4];
+    scene.film().crop_window(crop);
+    return crop_pixels(scene.camera().film.resolution, options.crop_given ? options.crop : crop);
+  }
+
+  RenderedWorld join(const BuiltWorld& built, const RenderOptions& options) const {
+    return join_parts(built, options, *settings_.parts, window_of(*built.scene, options));
   }
 
   /// Where the flags ask for it, the options' film is kept in a file, and is what was kept before.
@@ -260,10 +295,8 @@ class RenderJob {
           "can");
       return kUsage;
     }
-    RenderIdentity identity = identity_of(path_, file_);
-    for (const auto& [flag, value] : settings_.of_samples) identity.add(flag, value);
     checkpoint_ = std::make_unique<Checkpoint>(flags.kept_in(), Checkpoint::Seconds(duration_of(flags.every)),
-                                               std::move(identity));
+                                               identity(), command());
     options.keeper = checkpoint_.get(), options.more_samples = flags.more_samples();
     if (flags.resume.empty()) return kDone;
     const Checkpoint::Problem problem = checkpoint_->resume(flags.resume);
@@ -271,6 +304,14 @@ class RenderJob {
     say("whit: " + problem.text);
     return problem.trouble == Checkpoint::Trouble::Different ? kUsage : kFileError;
   }
+
+  RenderIdentity identity() const {
+    RenderIdentity identity = identity_of(path_, file_);
+    for (const auto& [flag, value] : settings_.of_samples) identity.add(flag, value);
+    return identity;
+  }
+
+  RenderCommand command() const { return {std::filesystem::current_path().string(), path_, settings_.picture_words}; }
 
   /// After a signal: what there is, and how to have the rest.
   int say_stopped(const RenderResult& result) const {
@@ -354,11 +395,10 @@ class RenderJob {
   /// The part of a picture of that size that the flags ask for; false where they do not.
   bool find_crop(Vec2i size, double (&crop)[4]) const {
     if (!settings_.crop.empty()) std::copy(settings_.crop.begin(), settings_.crop.end(), crop);
-    for (int axis = 0; axis < 2 && !settings_.pixel.empty(); ++axis) {
-      const double n = axis == 0 ? size.x : size.y, p = settings_.pixel[static_cast<size_t>(axis)];
-      crop[2 * axis] = (p - 0.5) / n, crop[2 * axis + 1] = (p + 0.5) / n;
-    }
-    return !settings_.crop.empty() || !settings_.pixel.empty();
+    std::vector<int> pixels = settings_.crop_pixels;
+    if (const std::vector<int>& one = settings_.pixel; !one.empty()) pixels = {one[0], one[0] + 1, one[1], one[1] + 1};
+    if (!pixels.empty()) pixel_crop({{pixels[0], pixels[2]}, {pixels[1], pixels[3]}}, size, crop);
+    return !settings_.crop.empty() || !pixels.empty();
   }
 
   RenderOptions render_options(const BuiltWorld& built, const std::vector<std::string>& aovs,

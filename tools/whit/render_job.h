@@ -17,4 +17,7 @@ struct BeforeScene {
 /// Parses, plans, builds, renders and writes, and reports after each. Returns the exit code.
 int render_file(const RenderSettings& settings, const std::string& path, const BeforeScene& before, RenderStats& stats);
 
+/// All scenes of the settings, which have been read: with their threads, limits and statistics. Returns the exit code.
+int render_scenes(const RenderSettings& settings, BeforeScene before);
+
 }  // namespace whit
