@@ -13,6 +13,7 @@
 
 #include "core/base/diagnostics.h"
 #include "tools/whit/commands.h"
+#include "tools/whit/instruction_sets.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/version.h"
 
@@ -66,7 +67,7 @@ int misspelt_command(const std::string& word) {
 }
 
 int print_version() {
-  fmt::print("whit {}\n", version());
+  fmt::print("whit {}, {}\n", version(), compiled_for());
   return kDone;
 }
 
