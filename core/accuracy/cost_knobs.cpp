@@ -120,6 +120,14 @@ void add_roulette(const SceneDescription& world, const EffectPlan& plan, std::ve
   }
 }
 
+/// Where there is a denoiser.
+void add_denoiser(std::vector<CostAlternative>& to) {
+  std::shared_ptr<const Denoiser> denoiser = load_denoiser().denoiser;
+  if (!denoiser) return;
+  CostVariant& variant = add(to, "denoise", "no", "(biased)", "").variant;
+  variant.flags = "--denoise", variant.denoiser = std::move(denoiser);
+}
+
 }  // namespace
 
 std::vector<CostAlternative> knobs_of(const SceneDescription& world, const Scene& scene, bool all_samplers) {
@@ -132,6 +140,7 @@ std::vector<CostAlternative> knobs_of(const SceneDescription& world, const Scene
   add_integrators(world, out);
   add_roulette(world, plan, out);
   add(out, "traversal", "robust", "fast", "--traversal").variant.robust = false;
+  add_denoiser(out);
   return out;
 }
 

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/accuracy/measures.h"
 #include "core/compare/quantiles.h"
+#include "core/session/denoised.h"
 
 namespace whit {
 namespace {
@@ -20,8 +23,20 @@ struct Look {
   }
 };
 
+/// The picture that comes of a film; what is done to it afterwards takes its time too. None where that fails.
+std::optional<Picture> picture_of(const Look& look, const CostRequest& request, Elapsed& spent) {
+  if (!look.world.denoiser) return look.film->picture();
+  const RenderResult result = look.film->result();
+  const Stopwatch watch;
+  DenoisedPicture made = denoise(*look.world.denoiser, result, request.threads);
+  spent = spent + watch.elapsed();
+  if (!made.error.empty()) return {};
+  return std::move(made.picture);
+}
+
 /// Adds the pair of one seed; false when it was stopped.
-bool add_pair(CostWorld& base, CostWorld& variant, int samples, uint32_t seed, CostPairs& pairs) {
+bool add_pair(CostWorld& base, CostWorld& variant, const CostRequest& request, int samples, uint32_t seed,
+              CostPairs& pairs) {
   Look one(base, samples, seed), other(variant, samples, seed);
   FilmRender* const films[] = {one.film.get(), other.film.get()};
   const Stopwatch watch;
@@ -29,9 +44,12 @@ bool add_pair(CostWorld& base, CostWorld& variant, int samples, uint32_t seed, C
   // The clock on the wall saw both; each gets its share by what the processor did for it.
   const double wall = watch.elapsed().wall, a = one.film->cpu_seconds(), b = other.film->cpu_seconds();
   const double share = a + b > 0 ? a / (a + b) : 0.5;
+  Elapsed base_spent{wall * share, a}, variant_spent{wall * (1 - share), b};
+  std::optional<Picture> made = picture_of(other, request, variant_spent);
+  if (!made) return false;
   pairs.samples = static_cast<int>(other.samples);
-  pairs.base.push_back(one.film->picture()), pairs.variant.push_back(other.film->picture());
-  pairs.base_spent.push_back({wall * share, a}), pairs.variant_spent.push_back({wall * (1 - share), b});
+  pairs.base.push_back(one.film->picture()), pairs.variant.push_back(std::move(*made));
+  pairs.base_spent.push_back(base_spent), pairs.variant_spent.push_back(variant_spent);
   return true;
 }
 
@@ -71,7 +89,7 @@ CostPairs render_pairs(CostWorld& base, CostWorld& variant, const CostRequest& r
                        int pairs) {
   CostPairs out;
   for (int r = 0; r < pairs && clock.go_on(); ++r) {
-    if (!add_pair(base, variant, samples, request.seed + static_cast<uint32_t>(r), out)) break;
+    if (!add_pair(base, variant, request, samples, request.seed + static_cast<uint32_t>(r), out)) break;
   }
   return out;
 }

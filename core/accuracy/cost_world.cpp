@@ -5,6 +5,8 @@
 
 #include <filesystem>
 
+#include "core/session/denoised.h"
+
 namespace whit {
 namespace {
 
@@ -103,7 +105,9 @@ CostWorld open_world(ParsedFile& file, size_t number, const CostVariant& variant
 
   world.own_samples = world.scene().samples_per_pixel;
   world.options.threads = request.threads;
-  world.options.aovs = {world.output.aovs, statement_place(*file.sources)};
+  world.denoiser = variant.denoiser;
+  if (world.denoiser) render_guides(world.output);
+  world.options.aovs = {world.output.rendered_aovs(), statement_place(*file.sources)};
   TextureStore* const textures = world.built.textures.get();
   world.options.progress = [&clock, textures](double) { return clock.go_on() && !textures->failed(); };
   set_samples(world.built, 1, request.seed + kFirstLookSeed);

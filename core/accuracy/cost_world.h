@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/accuracy/cost_clock.h"
+#include "core/image/denoiser.h"
 #include "core/render/film_render.h"
 #include "core/session/output.h"
 #include "core/session/overrides.h"
@@ -20,6 +21,7 @@ struct CostVariant {
   Overrides overrides{};
   EffectSet off{};
   bool robust = true;
+  std::shared_ptr<const Denoiser> denoiser{};  ///< Its picture in the place of the render's.
 };
 
 /// Names a place in the scene, for AOVs that stand for statements.
@@ -30,6 +32,7 @@ struct CostWorld {
   BuiltWorld built;
   OutputPlan output;  ///< Of the picture as the plain command writes it, into a folder that is gone.
   RenderOptions options;
+  std::shared_ptr<const Denoiser> denoiser;  ///< CostVariant::denoiser.
   Diagnostics said;
   Elapsed fixed;                ///< Of a render with any number of samples: building, first looks, writing.
   Elapsed per_sample;           ///< For all pixels, by a render of one.

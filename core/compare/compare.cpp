@@ -52,6 +52,25 @@ std::string unmeasured_limit(const PicturePair& pair, const Limits& limits) {
   return "";
 }
 
+// "a.exr is denoised (OpenImageDenoise 1.4.3)", of those that are.
+std::vector<std::string> denoised_ones(const PicturePair& pair) {
+  std::vector<std::string> sentences;
+  for (const auto& [path, info] : {std::pair(&pair.a_path, &pair.a), {&pair.b_path, &pair.b}}) {
+    if (const auto by = info->metadata.find("whit:denoised"); by != info->metadata.end())
+      sentences.push_back(fmt::format("{} is denoised ({})", *path, by->second));
+  }
+  return sentences;
+}
+
+// A test of noise takes errors for independent and without bias.
+std::string denoised_under_test(const PicturePair& pair, const Limits& limits) {
+  const std::vector<std::string> ones = denoised_ones(pair);
+  if (ones.empty() || !limits.noise || limits.exact) return "";
+  return ones.front() +
+         ": it is biased, and its errors are no noise that could be tested; compare the picture that it was "
+         "made of, or without --noise";
+}
+
 }  // namespace
 
 Comparison compare_pair(const PicturePair& pair, const CompareRequest& request) {
@@ -59,6 +78,7 @@ Comparison compare_pair(const PicturePair& pair, const CompareRequest& request) 
   result.a_path = pair.a_path;
   result.b_path = pair.b_path;
   result.cannot = unmeasured_limit(pair, request.limits);
+  if (result.cannot.empty()) result.cannot = denoised_under_test(pair, request.limits);
   if (!result.cannot.empty()) return result;
   result.window = pair.window;
   result.a_window = data_window(pair.a);
@@ -67,6 +87,8 @@ Comparison compare_pair(const PicturePair& pair, const CompareRequest& request) 
   result.height = pair.height();
   result.notes = pair.notes;
   note_statistics(pair, result);
+  for (const std::string& one : denoised_ones(pair))
+    result.notes.push_back(one + ": it is biased, which more samples need not make less");
   for (const ComparedLayer& layer : pair.layers) {
     result.layers.push_back(layer.name);
     for (const size_t c : layer.channels)

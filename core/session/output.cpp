@@ -65,8 +65,18 @@ void choose_aovs(const OutputRequest& request, const Film& film, OutputPlan& pla
   else plan.said.add({Severity::Error, ErrorClass::Usage, {}, "--aov: " + problem, ""});
 }
 
-void add_aovs(const AovPicture& aovs, OutputImage& image) {
-  for (const AovPicture::Channel& c : aovs.channels) image.layers.push_back({c.name, c.values, c.full_float});
+/// Those of the plan, and not its guides.
+void add_aovs(const OutputPlan& plan, const AovPicture& aovs, OutputImage& image) {
+  if (plan.aovs.empty()) return;
+  std::vector<std::string> unwritten;
+  for (const std::string& name : plan.guides) {
+    const std::vector<std::string>& channels = find_aov(name)->channels;
+    unwritten.insert(unwritten.end(), channels.begin(), channels.end());
+  }
+  for (const AovPicture::Channel& c : aovs.channels) {
+    if (std::count(unwritten.begin(), unwritten.end(), c.name) == 0)
+      image.layers.push_back({c.name, c.values, c.full_float});
+  }
   image.metadata.insert(image.metadata.end(), aovs.header.begin(), aovs.header.end());
   image.matrices = aovs.matrices;
 }
@@ -112,7 +122,7 @@ Diagnostics write_file(const std::string& path, const OutputPlan& plan, const Re
   }
   OutputImage image = to_output(picture, encoded.empty() ? picture.rgb : encoded);
   image.metadata = metadata;
-  if (holds_layers(path)) add_aovs(result.aovs, image);
+  if (holds_layers(path)) add_aovs(plan, result.aovs, image);
   WriteOptions options;
   options.full_float = plan.full_float;
   WriteResult written = write_image(path, image, options);
@@ -143,6 +153,12 @@ std::vector<std::string> files_read(const SceneDescription& world) {
   for (const auto& l : world.area_lights) add(l);
   for (const auto& s : world.shapes) add(s);
   return files;
+}
+
+std::vector<std::string> OutputPlan::rendered_aovs() const {
+  std::vector<std::string> names = aovs;
+  names.insert(names.end(), guides.begin(), guides.end());
+  return names;
 }
 
 OutputPlan plan_output(const OutputRequest& request, const Bound<Film>& film) {

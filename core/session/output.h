@@ -37,8 +37,11 @@ struct OutputPlan {
   std::string display_file;  ///< The PNG beside a linear file; "" when there is none.
   bool full_float = false;
   std::unique_ptr<const DisplayTransform> display;
-  std::vector<std::string> aovs;  ///< What the main file holds beside the colours: names that there are.
+  std::vector<std::string> aovs;    ///< What the main file holds beside the colours: names that there are.
+  std::vector<std::string> guides;  ///< AOVs that are rendered and not written, for a denoiser.
   Diagnostics said;
+
+  std::vector<std::string> rendered_aovs() const;  ///< Those and these.
 };
 
 /// Decides the names, checks that the files can be written and that the view exists.

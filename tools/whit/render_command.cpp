@@ -73,6 +73,15 @@ int render_command(const Arguments& args) {
   RenderSettings settings;
   int code = kDone;
   if (!read_render_flags(args, settings, code)) return code;
+  if (settings.denoise) {
+    // Before the sandbox, which may forbid where it lies.
+    DenoiserResult loaded = load_denoiser();
+    if (!loaded.denoiser) {
+      say("whit: --denoise: " + loaded.error);
+      return kUsage;
+    }
+    settings.denoiser = std::move(loaded.denoiser);
+  }
   if (const std::string problem = enter_sandbox(settings.sandbox, sandbox_request(settings)); !problem.empty()) {
     say("whit: " + problem);
     return kFileError;

@@ -68,7 +68,8 @@ const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose", "--san
 const std::vector<std::string> kAfterSamples{"scenes",     "--samples", "--time-limit",     "--view",  "--ocio",
                                              "--exposure", "--type",    "--texture-memory", "--strict"};
 
-/// The command's words without them, so that equal pictures are equal files.
+/// The command's words without them, so that equal pictures are equal files. --denoise makes another file; yet samples
+/// depend on it, whose surfaces are kept for it.
 Arguments picture_words(const Arguments& args) {
   const std::vector<std::string>&with_value = kBesideWithValue, &alone = kBeside;
   const auto is_in = [](const std::vector<std::string>& names, const std::string& word) {
@@ -77,7 +78,7 @@ Arguments picture_words(const Arguments& args) {
   Arguments words;
   for (size_t i = 0; i < args.size(); ++i) {
     if (is_in(with_value, args[i])) i += args[i].find('=') == std::string::npos;
-    else if (!is_in(alone, args[i])) words.push_back(args[i]);
+    else if (!is_in(alone, args[i]) && args[i] != "--denoise") words.push_back(args[i]);
   }
   return words;
 }
@@ -131,6 +132,7 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        &s.output.aovs,
        "What an .exr holds beside its colours: names of whit help aovs, or none",
        {.delimiter = ',', .offers = aov_names}},
+      {"--denoise", &s.denoise, "Write a second picture, NAME-denoised, by OpenImageDenoise: less noise, and biased"},
       {"--nthreads", &s.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
       {"--cropwindow", &s.crop, "Part of the picture: x0 x1 y0 y1 in [0,1]", {.count = 4}},
       {"--crop-pixels", &s.crop_pixels, "The same in pixels: x0 x1 y0 y1, from x0 to the one before x1", {.count = 4}},
@@ -265,6 +267,9 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.stats_file.empty() && (!s.debug_pixel.empty() || s.cat || s.toply)) {
     return "--stats FILE.json is of pictures, and none is made";
   }
+  if (s.denoise && (!s.debug_pixel.empty() || s.cat || s.toply)) return "--denoise is of pictures, and none is made";
+  if (s.denoise && !s.target.time_limit.empty())
+    return "--time-limit: how long --denoise takes at the end is not known before; leave one of them out";
   if (std::string problem = usage_problem(s, s.target); !problem.empty()) return problem;
   if (std::string problem = usage_problem(s, s.checkpoint); !problem.empty()) return problem;
   for (const std::string& scene : s.scenes) {

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/image/denoiser.h"
 #include "core/session/output.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/effect_flags.h"
@@ -55,6 +57,8 @@ struct RenderSettings {
   bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;
   std::string stats_file;  ///< For figures as JSON; "-" is standard output, "" none.
   bool cat = false, toply = false;
+  bool denoise = false;
+  std::shared_ptr<const Denoiser> denoiser;  ///< There when `denoise` asks for it.
   int verbosity = 0, min_log_level = 0;
   std::string display_server, log_dir, traversal = "robust", half_or_float = "half";
   std::string command_line;

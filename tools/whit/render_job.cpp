@@ -21,6 +21,7 @@
 #include "core/render/film_render.h"
 #include "core/scene/problems.h"
 #include "core/session/checkpoint.h"
+#include "core/session/denoised.h"
 #include "core/session/memory.h"
 #include "core/session/parts.h"
 #include "tools/whit/display_server.h"
@@ -153,7 +154,12 @@ class RenderJob {
     if (!planned.bound.film.plugin) return kSceneError;
 
     const Stopwatch planning_output;
-    const OutputPlan output = plan_output(output_request(world), planned.bound.film);
+    OutputPlan output = plan_output(output_request(world), planned.bound.film);
+    if (settings_.denoiser && !output.said.has_errors()) {
+      render_guides(output);
+      denoised_ = plan_denoised(output_request(world), output, planned.bound.film);
+      output.said.append(denoised_.said);
+    }
     times_.output = planning_output.elapsed();
     if (int code = report_output(output.said); code != kDone) return code;
     for (const std::string& name : {output.main_file, output.display_file}) {
@@ -219,7 +225,7 @@ class RenderJob {
     film.threads = settings_.threads;
     film.crop_given = find_crop(of.resolution(), film.crop);
     film.quick = settings_.quick;
-    film.aovs = output.aovs;
+    film.aovs = output.rendered_aovs();
     film.blocks = settings_.target.any(), film.adaptive = !settings_.target.error.empty();
     film.linear = is_linear_format(output.main_file);
     film.display = !film.linear || !output.display_file.empty();
@@ -242,7 +248,7 @@ class RenderJob {
     step_ = "rendering";
     DisplayServer viewer;
     const Stopwatch connecting;
-    RenderOptions options = render_options(built, output.aovs, viewer);
+    RenderOptions options = render_options(built, output.rendered_aovs(), viewer);
     if (int code = keep_state(*built.scene, options); code != kDone) return code;
     times_.output += connecting.elapsed();
     times_.ready = times_.program + times_.flags + world_started_.elapsed();
@@ -369,9 +375,23 @@ class RenderJob {
     const RenderOutcome outcome{*built.scene, result,         output,         *built.textures,
                                 times_,       unread_.size(), parsed_memory_, memory_estimate_};
     stats_.add(settings_, path_, outcome);
+    if (!settings_.quiet) {
+      summarise(outcome, settings_.stats);
+      if (!passed_.empty()) name_what_was_passed();
+    }
+    return settings_.denoiser && result.complete ? denoise(result) : kDone;
+  }
+
+  /// The second picture of --denoise.
+  int denoise(const RenderResult& result) {
+    step_ = "denoising";
+    const WrittenOutput written =
+        write_denoised(*settings_.denoiser, denoised_, result, metadata(result), settings_.threads);
+    if (int code = report_output(written.said); code != kDone) return code;
     if (settings_.quiet) return kDone;
-    summarise(outcome, settings_.stats);
-    if (!passed_.empty()) name_what_was_passed();
+    const std::string display = denoised_.display_file.empty() ? "" : " and " + denoised_.display_file;
+    say(fmt::format("denoised: {}{}  [{}, {:.2g} s; biased]", denoised_.main_file, display,
+                    settings_.denoiser->describe(), written.elapsed.wall));
     return kDone;
   }
 
@@ -456,6 +476,7 @@ class RenderJob {
   double memory_estimate_ = 0;  ///< Of the world at hand, in bytes.
   StepTimes times_;
   std::unique_ptr<Checkpoint> checkpoint_;
+  OutputPlan denoised_;             ///< Of the world at hand, for --denoise.
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
   bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.
   std::vector<Diagnostic> passed_;  ///< Errors that --keep-going went past.
