@@ -124,7 +124,7 @@ void add_roulette(const SceneDescription& world, const EffectPlan& plan, std::ve
 void add_denoiser(std::vector<CostAlternative>& to) {
   std::shared_ptr<const Denoiser> denoiser = load_denoiser().denoiser;
   if (!denoiser) return;
-  CostVariant& variant = add(to, "denoise", "no", "(biased)", "").variant;
+  CostVariant& variant = add(to, "denoise", "none", "(biased)", "").variant;
   variant.flags = "--denoise", variant.denoiser = std::move(denoiser);
 }
 
