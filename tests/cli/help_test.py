@@ -117,7 +117,7 @@ class Help(Case):
 class Commands(Case):
     def test_version(self):
         for word in ("--version", "-V", "version"):
-            self.assertRegex(self.good(word), r"^whit \d+\.\d+\.\d+\n$")
+            self.assertRegex(self.good(word), r"^whit \d+\.\d+\.\d+, .+\n$")
         # A file of that name is a scene, as with any other word.
         with open(os.path.join(self.folder, "version"), "w", encoding="utf-8") as f:
             f.write("Nonsense\n")
