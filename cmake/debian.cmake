@@ -10,7 +10,7 @@ endif()
 get_filename_component(share ${manual}/../../.. ABSOLUTE)
 set(doc ${share}/doc/whit)
 
-# The same time in every file that is made here, for equal trees to make equal packages.
+# Without the time in the file, which would differ from one package to the next.
 function(compress file)
   execute_process(COMMAND gzip -9 -n --force ${file} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()

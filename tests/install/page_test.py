@@ -27,8 +27,9 @@ class Page(installed.Folder):
 
     def test_what_is_in_the_prefix(self):
         with open(installed.ROOT + "/docs/install.md", encoding="utf-8") as f:
-            rows = re.findall(r"^\| (`.*`) \|", f.read(), re.MULTILINE)
+            rows = re.findall(r"^\| (`[^|]*`) \|", f.read(), re.MULTILINE)
         named = [name for row in rows for name in re.findall(r"`(.*?)`", row)]
+        self.assertIn("bin/whit", named)
         prefix = self.path("prefix")
         installed.run("cmake", "--install", installed.PORTABLE, "--prefix", prefix)
         files = [os.path.relpath(os.path.join(where, name), prefix) for where, _, names in os.walk(prefix) for name in names]
