@@ -1,5 +1,7 @@
 #include "core/session/files.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -34,6 +36,13 @@ std::vector<std::string> assets_of(const ParsedFile& file) {
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
+}
+
+std::string place_in_scene(const Sources& sources, SourcePos where, const std::string& path) {
+  const SourcePlace p = sources.place(where);
+  const std::string at = fmt::format("{}:{}:{}", sources.name(where.file), p.line, p.column);
+  const std::string folder = std::filesystem::path(path).parent_path().string() + "/";
+  return folder.size() > 1 && at.starts_with(folder) ? at.substr(folder.size()) : at;
 }
 
 }  // namespace whit

@@ -15,4 +15,8 @@ std::vector<std::string> texts_of(const ParsedFile& file);
 /// not; sorted, each once.
 std::vector<std::string> assets_of(const ParsedFile& file);
 
+/// "scene.pbrt:12:3" for a statement, by the folder of the scene at `path`: names of things in a picture are the same
+/// wherever it was rendered from.
+std::string place_in_scene(const Sources& sources, SourcePos where, const std::string& path);
+
 }  // namespace whit

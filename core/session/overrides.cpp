@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "core/plugin/registry.h"
+#include "core/plugin/sampler.h"
 
 namespace whit {
 namespace {
@@ -146,6 +148,15 @@ void filter_textures(SceneDescription& world, const std::string& filter) {
   }
 }
 
+/// Samples at fixed places are not what another sampler's tend to.
+bool has_fixed_places(const Entity& sampler) {
+  for (const Parameter& p : sampler.params) {
+    const bool truth = p.type == ParamType::Bool && !p.bools().empty() && p.bools()[0] != 0;
+    if ((p.name == "samplepixelcenter" && truth) || (p.name == "jitter" && !truth)) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::string usage_problem(const Overrides& o) {
@@ -169,6 +180,16 @@ std::string override_world(SceneDescription& world, const Overrides& o) {
     if (std::string problem = turn(world, knob); !problem.empty()) return problem;
   }
   return {};
+}
+
+std::string use_extending_sampler(SceneDescription& world) {
+  const PluginInfo& sampler = sampler_in_force(world);
+  const std::unique_ptr<Plugin> made = sampler.make();
+  if (static_cast<const Sampler&>(*made).extends() || has_fixed_places(world.sampler)) return "";
+  Overrides sobol;
+  sobol.sampler = "sobol";
+  override_world(world, sobol);
+  return sampler.name;
 }
 
 ScopedOverrides::ScopedOverrides(SceneDescription& world, const Overrides& overrides)

@@ -31,6 +31,10 @@ std::string override_world(SceneDescription& world, const Overrides& overrides);
 /// The same for all worlds of a file, up to the first problem.
 std::string override_worlds(ParsedFile& file, const Overrides& overrides);
 
+/// Gives a world whose sampler has sets of a number of samples one that goes on, sobol, which has the same limit; but where
+/// samples lie at places that were asked for. Returns the sampler that it had, "" where it stays.
+std::string use_extending_sampler(SceneDescription& world);
+
 /// A world under overrides until this ends, for variants of one file. What is planned and built meanwhile keeps them:
 ///   BuiltWorld built = [&] {
 ///     const ScopedOverrides scope(world, overrides);

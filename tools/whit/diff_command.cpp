@@ -7,14 +7,15 @@
 
 #include "core/base/stopwatch.h"
 #include "core/compare/compare.h"
+#include "core/compare/comparison_json.h"
 #include "core/compare/heatmap.h"
 #include "core/compare/noise.h"
 #include "core/compare/report_page.h"
 #include "tools/whit/diff_flags.h"
 #include "tools/whit/diff_folders.h"
-#include "tools/whit/diff_json.h"
 #include "tools/whit/diff_outputs.h"
 #include "tools/whit/diff_text.h"
+#include "tools/whit/json.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/update_references.h"
 

@@ -7,11 +7,12 @@
 #include <filesystem>
 #include <set>
 
+#include "core/compare/comparison_json.h"
 #include "core/compare/folders.h"
 #include "core/compare/report_page.h"
-#include "tools/whit/diff_json.h"
 #include "tools/whit/diff_outputs.h"
 #include "tools/whit/diff_table.h"
+#include "tools/whit/json.h"
 #include "tools/whit/terminal.h"
 #include "tools/whit/update_references.h"
 

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <map>
 
-#include "core/image/write.h"
 #include "core/plugin/memory_limit.h"
 #include "core/scene/left_out.h"
-#include "core/session/memory.h"
+#include "core/session/explain.h"
 #include "tools/whit/effect_flags.h"
 #include "tools/whit/json.h"
 #include "tools/whit/load.h"
@@ -106,18 +105,8 @@ void print_world(const PlannedWorld& world, const Sources& sources) {
   for (const Ignored& i : world.plan.ignored) fmt::print("  {} at {}\n", printable(i.what), sources.location(i.where));
 }
 
-/// As `whit render` without flags would take it.
-MemoryPlan memory_of(const PlannedWorld& world) {
-  MemoryRequest request;
-  const Film& film = *world.bound.film.plugin;
-  const StringList& aovs = film.aovs();
-  request.film.aovs.assign(aovs.values.begin(), aovs.values.end());
-  request.film.linear = film.file_name().empty() || is_linear_format(film.file_name());
-  return plan_memory(world, request);
-}
-
 void print_memory(const PlannedWorld& world, const Sources& sources) {
-  const MemoryPlan memory = memory_of(world);
+  const MemoryPlan memory = plan_memory_of(world);
   fmt::print("memory\n");
   for (size_t u = 0; u < kMemoryUses; ++u) {
     const auto use = static_cast<MemoryUse>(u);
@@ -132,74 +121,10 @@ void print_memory(const PlannedWorld& world, const Sources& sources) {
              memory_step_text(memory.step()), bytes_text(static_cast<double>(memory_limit())));
 }
 
-// ---- For machines ----
-
-Json describe_use(Effect e, const EffectPlan& plan, const Sources& sources) {
-  const EffectUse& use = plan.use(e);
-  Json::Object j{{"effect", effect_name(e)}, {"on", plan.needed.has(e)}, {"doc", effect_info(e).doc}};
-  if (use.count > 0) j.emplace_back("called_for_by", use.count);
-  Json::Array causes;
-  for (const EffectCause& cause : use.causes) {
-    causes.push_back(Json::Object{{"what", cause.what}, {"where", sources.location(cause.where)}});
-  }
-  if (!causes.empty()) j.emplace_back("causes", causes);
-  if (!plan.needed.has(e)) {
-    j.emplace_back("why_off", use.count > 0 ? use.why_off : "nothing calls for it");
-    return j;
-  }
-  const EffectInfo& info = effect_info(e);
-  j.emplace_back("stages", info.stages);
-  if (*info.dimensions) j.emplace_back("dimensions", info.dimensions);
-  if (info.ray_bytes > 0) j.emplace_back("bytes_per_ray", info.ray_bytes);
-  if (info.point_bytes > 0) j.emplace_back("bytes_per_point", info.point_bytes);
-  return j;
-}
-
-Json describe_left_out(const LeftOut& l, const Sources& sources) {
-  Json::Object j{{"kind", l.kind}, {"name", l.name}, {"where", sources.location(l.where)}, {"reason", l.reason}};
-  Json::Array files;
-  for (const LeftOutFile& f : l.files) files.push_back(Json::Object{{"name", f.name}, {"bytes", f.bytes}});
-  if (!files.empty()) j.emplace_back("files", files);
-  return j;
-}
-
-Json describe(const PlannedWorld& p, const Sources& sources) {
-  Json::Array effects, left_out, not_simulated;
-  for_effects(EffectSet::all(), [&](Effect e) { effects.push_back(describe_use(e, p.plan, sources)); });
-  for (const LeftOut& l : find_left_out(p.bound, p.plan)) left_out.push_back(describe_left_out(l, sources));
-  for (const Ignored& i : p.plan.ignored) {
-    not_simulated.push_back(Json::Object{{"what", i.what}, {"where", sources.location(i.where)}});
-  }
-  return Json::Object{{"effects", effects}, {"left_out", left_out}, {"not_simulated", not_simulated}};
-}
-
-Json describe_memory(const PlannedWorld& world, const Sources& sources) {
-  const MemoryPlan memory = memory_of(world);
-  Json::Object uses, steps;
-  for (size_t u = 0; u < kMemoryUses; ++u) {
-    const auto use = static_cast<MemoryUse>(u);
-    const MemoryPart& largest = memory.largest(use);
-    Json::Object of{{"bytes", static_cast<int64_t>(memory.of(use))}};
-    if (largest.where.known())
-      of.emplace_back("largest", Json::Object{{"what", largest.what}, {"where", sources.location(largest.where)}});
-    uses.emplace_back(memory_use_key(use), of);
-  }
-  for (size_t s = 0; s < kMemorySteps; ++s) {
-    const auto step = static_cast<MemoryStep>(s);
-    steps.emplace_back(memory_step_key(step), static_cast<int64_t>(memory.total(step)));
-  }
-  return Json::Object{{"estimate_bytes", static_cast<int64_t>(memory.total())},
-                      {"limit_bytes", static_cast<int64_t>(memory_limit())},
-                      {"step", memory_step_key(memory.step())},
-                      {"uses", uses},
-                      {"steps", steps}};
-}
-
 void print_json(const std::vector<PlannedWorld>& worlds, const Sources& sources, bool memory) {
   Json::Array described;
   for (const PlannedWorld& world : worlds) {
-    described.push_back(memory ? Json(Json::Object{{"memory", describe_memory(world, sources)}})
-                               : describe(world, sources));
+    described.push_back(memory ? Json::Object{{"memory", memory_json(world, sources)}} : plan_json(world, sources));
   }
   fmt::print("{}\n", to_text(Json::Object{{"worlds", described}}));
 }

@@ -1,35 +1,11 @@
-// JSON values under construction. Only json.cpp knows the library that writes them, which takes long to compile.
+// JSON as commands print it. Only json.cpp knows the library that writes it, which takes long to compile.
 #pragma once
 
-#include <concepts>
-#include <cstdint>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <variant>
-#include <vector>
+
+#include "core/base/json.h"
 
 namespace whit {
-
-/// A value of JSON; null by default. Whatever a value can be made of converts to it.
-struct Json {
-  using Array = std::vector<Json>;
-  using Object = std::vector<std::pair<std::string, Json>>;  ///< Written in this order.
-
-  std::variant<std::monostate, bool, int64_t, double, std::string, Array, Object> value;
-
-  Json() = default;
-  Json(bool truth) : value(truth) {}
-  template <std::integral T>
-  Json(T number) : value(static_cast<int64_t>(number)) {}
-  Json(double number) : value(number) {}
-  Json(const char* text) : value(std::string(text)) {}
-  Json(std::string text) : value(std::move(text)) {}
-  Json(std::string_view text) : value(std::string(text)) {}
-  Json(const std::vector<std::string>& texts) : value(Array(texts.begin(), texts.end())) {}
-  Json(Array elements) : value(std::move(elements)) {}
-  Json(Object members) : value(std::move(members)) {}
-};
 
 /// One line for each value, with an indentation of one space. Bytes that are not UTF-8 are replaced.
 std::string to_text(const Json& json);

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <new>
 #include <optional>
@@ -22,6 +21,7 @@
 #include "core/scene/problems.h"
 #include "core/session/checkpoint.h"
 #include "core/session/denoised.h"
+#include "core/session/files.h"
 #include "core/session/memory.h"
 #include "core/session/parts.h"
 #include "tools/whit/display_server.h"
@@ -203,11 +203,6 @@ class RenderJob {
   std::string place(SourcePos where) const {
     const SourcePlace p = sources_.place(where);
     return fmt::format("{}:{}:{}", sources_.name(where.file), p.line, p.column);
-  }
-  /// The same by the scene's own folder: names of things in a picture are the same wherever it was rendered from.
-  std::string place_in_scene(SourcePos where) const {
-    const std::string at = place(where), folder = std::filesystem::path(path_).parent_path().string() + "/";
-    return folder.size() > 1 && at.starts_with(folder) ? at.substr(folder.size()) : at;
   }
 
   OutputRequest output_request(const SceneDescription& world) const {
@@ -424,7 +419,7 @@ class RenderJob {
   RenderOptions render_options(const BuiltWorld& built, const std::vector<std::string>& aovs,
                                DisplayServer& viewer) const {
     RenderOptions options;
-    options.aovs = {aovs, [this](SourcePos where) { return place_in_scene(where); }};
+    options.aovs = {aovs, [this](SourcePos where) { return place_in_scene(sources_, where, path_); }};
     options.threads = settings_.threads;
     const Vec2i size = built.scene->camera().film.resolution;
     options.crop_given = find_crop(size, options.crop);

@@ -10,16 +10,6 @@
 namespace whit {
 namespace {
 
-std::vector<StartPart> build_parts(const BuildTimes& b) {
-  return {{"inputs", "inputs read", b.inputs},
-          {"geometry", "geometry read", b.geometry},
-          {"materials", "textures and materials prepared", b.materials},
-          {"placing", "geometry moved to render space", b.placing},
-          {"pictures", "pictures of lights read", b.pictures},
-          {"lights", "lights prepared", b.lights},
-          {"ray_tracer", "ray tracer built", b.ray_tracer}};
-}
-
 /// Parts of a start that take no millisecond are not worth a word.
 constexpr double kShown = 0.5e-3;
 
@@ -79,17 +69,6 @@ void say_lights(const Scene& scene) {
 }
 
 }  // namespace
-
-std::vector<StartPart> start_parts(const StepTimes& times, const BuildTimes& build) {
-  std::vector<StartPart> parts = {{"program", "program loaded", times.program},
-                                  {"flags", "flags read", times.flags},
-                                  {"parse", "scene parsed", times.parse},
-                                  {"plan", "effects planned", times.plan},
-                                  {"output", "output planned", times.output}};
-  const std::vector<StartPart> built = build_parts(build);
-  parts.insert(parts.end(), built.begin(), built.end());
-  return parts;
-}
 
 void report_invalid(const RenderStatistics& s) {
   say(fmt::format(

@@ -1,4 +1,4 @@
-#include "tools/whit/diff_json.h"
+#include "core/compare/comparison_json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // A comparison as JSON.
 #pragma once
 
+#include "core/base/json.h"
 #include "core/compare/comparison.h"
 #include "core/compare/limits.h"
-#include "tools/whit/json.h"
 
 namespace whit {
 
