@@ -6,6 +6,15 @@
 
 namespace whit {
 
+const char* severity_name(Severity severity) {
+  switch (severity) {
+    case Severity::Error: return "error";
+    case Severity::Warning: return "warning";
+    case Severity::Note: break;
+  }
+  return "note";
+}
+
 const char* general_name(const Diagnostic& d) {
   if (d.severity != Severity::Error) return "warning";
   return d.error_class == ErrorClass::File ? "file" : "mistake";

@@ -8,6 +8,9 @@
 
 namespace whit {
 
+/// "error", "warning" or "note".
+const char* severity_name(Severity severity);
+
 /// What a diagnostic without a name of its own is called: "mistake", "file" or "warning".
 const char* general_name(const Diagnostic& d);
 

@@ -115,15 +115,6 @@ Json result_as_json(const Sources& sources, const Diagnostic& d, size_t rule) {
 
 }  // namespace
 
-const char* severity_name(Severity severity) {
-  switch (severity) {
-    case Severity::Error: return "error";
-    case Severity::Warning: return "warning";
-    case Severity::Note: break;
-  }
-  return "note";
-}
-
 std::string check_as_json(const std::vector<Checked>& all) {
   Json::Array diagnostics;
   int counts[3] = {};

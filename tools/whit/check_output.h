@@ -21,7 +21,4 @@ std::string check_as_json(const std::vector<Checked>& all);
 /// The same as SARIF 2.1.0, which code reviews show.
 std::string check_as_sarif(const std::vector<Checked>& all);
 
-/// "error", "warning" or "note".
-const char* severity_name(Severity severity);
-
 }  // namespace whit
