@@ -1,11 +1,13 @@
 // What can be asked of a scene without having its picture: check, explain, cost.
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <memory>
 
 #include "core/accuracy/report.h"
 #include "core/check/check.h"
+#include "core/check/names.h"
 #include "core/render/aovs.h"
 #include "core/session/explain.h"
 #include "python/convert.h"
@@ -16,7 +18,19 @@
 namespace whit::python {
 namespace {
 
+/// Names that cannot be allowed or asked for are wrong usage.
+void refuse_unknown(const char* argument, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const std::string problem = problem_of_allowing(name);
+    if (problem.empty()) continue;
+    const std::string hint = did_you_mean(name, names_that_can_be_allowed());
+    throw Failure(FailureKind::Usage, fmt::format("{}: {}{}{}", argument, problem, hint.empty() ? "" : "; ", hint));
+  }
+}
+
 py::list check(const SceneSource& source, const std::vector<std::string>& allow, const std::vector<std::string>& also) {
+  refuse_unknown("allow", allow);
+  refuse_unknown("also", also);
   return to_python(wait_for(
       [&](Attention& attention) {
         ReadOptions options;

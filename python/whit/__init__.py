@@ -20,6 +20,7 @@ Pictures have the same bits as those of the command `whit` of the same build. Wh
 Errors are exceptions: `whit.SceneError`, `whit.FileError`, `whit.UsageError` and `whit.LimitError`, all of them
 `whit.Error`, with what there is to say of the scene in `diagnostics`.
 """
+from whit import _examples as _examples
 from whit._compare import Comparison, diff, measures
 from whit._errors import Diagnostic, Error, FileError, LimitError, SceneError, UsageError
 from whit._inquiries import aovs, check, cost, effects, explain
