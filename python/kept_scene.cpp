@@ -202,6 +202,17 @@ void KeptScene::set(const RenderWish& wish) {
   now_.samples = samples, now_.seed = seed;
 }
 
+/// A camera or a sampler that could not be prepared for what was asked is lost.
+void KeptScene::require_usable() const {
+  const BoundScene& bound = built_.scene->bound;
+  if (bound.camera.plugin && bound.sampler.plugin) return;
+  throw Failure(
+      FailureKind::Scene,
+      "the scene's camera or sampler cannot be had with a resolution or a number of samples that was asked for; "
+      "make the Scene anew",
+      said_);
+}
+
 RenderOptions KeptScene::options_for(const RenderWish& wish) const {
   RenderOptions options;
   const Sources& sources = *file_.sources;
@@ -237,11 +248,13 @@ RenderedWorld KeptScene::trace(const RenderWish& wish, RenderOptions options, At
 
 std::unique_ptr<RenderedPicture> KeptScene::render(const RenderWish& wish, Attention& attention) {
   const std::lock_guard lock(mutex_);
+  require_usable();
   OutputPlan output;
   const Stopwatch preparing;
   RenderOptions options = options_for(wish);
   output.aovs = options.aovs.names;
   set(wish);
+  require_usable();
   times_.output = preparing.elapsed();
   times_.ready = times_.parse + times_.plan + times_.output + times_.build;
   std::optional<Json::Object> target;

@@ -96,6 +96,7 @@ class KeptScene {
   MemoryPlan plan_memory_for(const PlannedWorld& planned, const RenderWish& first) const;
   std::vector<std::string> aovs_of(const RenderWish& wish) const;
   void set(const RenderWish& wish);
+  void require_usable() const;
   RenderOptions options_for(const RenderWish& wish) const;
   RenderedWorld trace(const RenderWish& wish, RenderOptions options, Attention& attention,
                       std::optional<Json::Object>& target);

@@ -98,7 +98,7 @@ def command(scene: PathOrText, flags: Sequence[tuple[str, Any]]) -> str:
             continue
         words.append(flag)
         if flag == "--cropwindow":
-            words += [f"{x:.17g}" if float(f"{x:g}") != x else f"{x:g}" for x in value]
+            words += [f"{x:g}" if float(f"{x:g}") == x else repr(x) for x in value]
         elif value is not True:
             words.append(",".join(value) if isinstance(value, list) else str(value))
     return " ".join(words)
