@@ -6,7 +6,10 @@
 #include <chrono>
 #include <functional>
 #include <future>
-#include <utility>
+#include <memory>
+#include <type_traits>
+
+#include "python/threads.h"
 
 namespace whit::python {
 
@@ -36,7 +39,11 @@ template <class Work>
 auto attended(Work&& work, const Look& look) {
   constexpr std::chrono::milliseconds kEvery{50};
   Attention attention;
-  auto result = std::async(std::launch::async, [&] { return work(attention); });
+  using Result = std::invoke_result_t<Work&, Attention&>;
+  // Shared, since the thread may leave it after the result is there.
+  const auto task = std::make_shared<std::packaged_task<Result()>>([&] { return work(attention); });
+  std::future<Result> result = task->get_future();
+  run_in_thread([task] { (*task)(); });
   try {
     while (result.wait_for(kEvery) != std::future_status::ready) {
       if (!look(attention.share())) attention.end();

@@ -1,6 +1,7 @@
 """Rendering, once and again."""
 from __future__ import annotations
 
+import os
 from typing import Any, Callable, Optional, Sequence
 
 import numpy as np
@@ -111,7 +112,7 @@ def render(scene: PathOrText, *, spp: Optional[int] = None, seed: Optional[int] 
     if not has_target:
         said["confidence"] = said["max_samples"] = None
     flags = [("--cropwindow" if flag == "--crop" else flag, value) for flag, value in _flags(said)]
-    wish["command"] = _arguments.command(scene, flags)
+    wish["command"] = os.fsencode(_arguments.command(scene, flags))
     return _rendered(_whit.render(_arguments.source(scene), built, wish, progress), progress)
 
 
@@ -165,7 +166,7 @@ class Scene:
                 "aov": wish["aovs"]}
         flags = [("--cropwindow" if flag == "--crop" else flag, value) for flag, value in _flags(said)]
         if camera is None and resolution is None:
-            wish["command"] = _arguments.command(self._scene, flags)
+            wish["command"] = os.fsencode(_arguments.command(self._scene, flags))
         return _rendered(self._core.render(wish, progress), progress)
 
     @property

@@ -293,19 +293,19 @@ class Saving(Folder):
 
 class Errors(Folder):
     def test_a_wrong_scene_says_where(self):
-        wrong = self.write("wrong.pbrt", SCENE.replace('Shape "sphere"', 'Shape "sphree"'))
+        wrong = self.write("wrong.pbrt", SCENE.replace('Shape "sphere"', 'Shpae "sphere"'))
         with self.assertRaises(whit.SceneError) as raised:
             whit.render(wrong)
         line = SCENE[:SCENE.index('Shape "sphere"')].count("\n") + 1
         error = raised.exception.diagnostics[0]
         self.assertEqual((error.severity, error.file, error.line), ("error", str(wrong), line))
-        self.assertIn("sphere", error.remedy)
+        self.assertEqual(error.remedy, "did you mean Shape?")
         self.assertIn("%s:%d:" % (wrong, line), str(raised.exception))
         self.assertIsInstance(raised.exception, whit.Error)
-        self.assertIn("sphree", str(error))
+        self.assertIn("Shpae", str(error))
 
     def test_all_functions_raise_it(self):
-        wrong = SCENE.replace('Shape "sphere"', 'Shape "sphree"')
+        wrong = SCENE.replace('Shape "sphere"', 'Shpae "sphere"')
         for ask in (whit.render, whit.Scene, whit.explain, lambda scene: whit.cost(scene, seconds=1)):
             with self.assertRaises(whit.SceneError):
                 ask(wrong)
@@ -357,7 +357,7 @@ class Errors(Folder):
     def test_paths_and_texts_need_not_be_utf8(self):
         scene = os.fsencode(self.folder) + b"/\xff.pbrt"
         with open(scene, "wb") as f:
-            f.write(SCENE.encode().replace(b"sphere", b"sph\xffre"))
+            f.write(SCENE.encode().replace(b"Shape", b"Sh\xffpe"))
         with self.assertRaises(whit.SceneError) as raised:
             whit.render(os.fsdecode(scene))
         self.assertEqual(raised.exception.diagnostics[0].file, os.fsdecode(scene))
@@ -439,9 +439,11 @@ class Scene(Folder):
         numpy.testing.assert_array_equal(scene.render(camera=scene.camera).pixels, scene.render().pixels)
         moved = scene.render(camera=whit.look_at((3, 2, 5), (0, 0.5, 0), (0, 1, 0)), spp=64)
         built = whit.render(SCENE.replace("LookAt 0 2 6", "LookAt 3 2 5"), spp=64)
-        # The same view from another render space: a few samples fall on the other side of an edge.
-        self.assertTrue(whit.diff(moved, built, noise=True).same)
-        self.assertFalse(whit.diff(moved, scene.render(spp=64), noise=True).same)
+        # The same view from another render space: a few of the samples fall on the other side of an edge, and each is 1/64
+        # of its pixel. The scene's own view is another picture.
+        scale = built.pixels.mean()
+        self.assertLess(abs(moved.pixels - built.pixels).mean(), 0.01 * scale)
+        self.assertGreater(abs(moved.pixels - scene.render(spp=64).pixels).mean(), 0.1 * scale)
         numpy.testing.assert_array_equal(scene.render().pixels, whit.render(SCENE).pixels)  # and back
 
     def test_another_resolution(self):
