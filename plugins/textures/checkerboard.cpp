@@ -31,7 +31,7 @@ inline float filtered_share(float s, float t, float ds, float dt) {
   const float point = odd(std::floor(s) + std::floor(t));
   const float a = odd_share(s, ds), b = odd_share(t, dt);
   const float area = max_of(ds, dt) > 1 ? 0.5f : a + b - 2 * a * b;
-  return edges > 0 ? area : point;
+  return edges <= 0 ? point : area;  // Of coordinates beyond all numbers nothing is known: as pbrt, the mean.
 }
 
 template <class T>

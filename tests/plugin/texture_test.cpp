@@ -203,6 +203,16 @@ TEST(Checkerboard, FiltersByItsIntegral) {
   EXPECT_NEAR(v[4], 0.5, 1e-6);
 }
 
+TEST(Checkerboard, TheMeanWhereCoordinatesAreBeyondNumbers) {
+  // Found by the mutator: "uv" of 1e38 by a "uscale" of 24 is infinite, and so is the footprint. pbrt-v3 finds no cell that
+  // holds it, and takes the mean of both, which a silent black is not.
+  const float infinity = std::numeric_limits<float>::infinity();
+  ShadingPoints points(2);
+  points.set_flat(0, infinity, 0.5f), points.set_footprint(0, infinity, 0, 0, 0.1f);
+  points.set_flat(1, infinity, 0.5f), points.set_footprint(1, 3e38f, 0, 0, 0.1f);
+  EXPECT_EQ(values(*make_texture("checkerboard", {}).plugin, points.s), (std::vector<float>{0.5f, 0.5f}));
+}
+
 TEST(Checkerboard, InThreeDimensionsTheCtmItselfIsApplied) {
   // pbrt-v3's IdentityMapping3D takes texture-to-world for world-to-texture: Scale 2 makes cells of one half.
   ShadingPoints points(2);
