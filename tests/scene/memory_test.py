@@ -88,9 +88,9 @@ class Memory(unittest.TestCase):
             return figure
 
     def test_films_are_refused(self):
-        # 32 bytes a pixel of a unit that reaches no further, and 12 of the finished picture: 44 x 6000^2 = 1.5 GiB.
+        # 48 bytes a pixel of a unit that reaches no further, and 12 of the finished picture: 60 x 6000^2 = 2.0 GiB.
         box = 'PixelFilter "box"\n'
-        self.assertAlmostEqual(self.refused("film0", film_scene(6000, 6000, box), "Film") / (44 * 36 / 1.048576), 1, delta=0.1)
+        self.assertAlmostEqual(self.refused("film0", film_scene(6000, 6000, box), "Film") / (60 * 36 / 1.048576), 1, delta=0.1)
         self.refused("film1", film_scene(65536, 65536), "Film")
         self.refused("film2", film_scene(65536, 600, box), "Film")
         self.refused("film3", film_scene(7000, 7000, box, "png"), "Film")
