@@ -1,0 +1,194 @@
+"""whit-farm: one picture on many machines, bit by bit the picture of one.
+
+The picture is cut into parts (`_farm_plan`), Dask hands them out, every worker renders its parts by the program `whit`
+(`_farm_job`), and `whit merge` joins them. docs/farm.md has commands and figures.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from dataclasses import asdict, dataclass
+from typing import Any, Callable, Sequence
+
+from . import _farm_clusters as clusters
+from ._farm_job import FarmError, Job, measure, merge, program, render_part, size_of
+from ._farm_plan import Part, TimeModel, cut, schedule, simulate
+from ._farm_slurm import slurm_script
+
+__all__ = ["FarmError", "Report", "render", "main"]
+
+
+@dataclass
+class Report:
+    """What a render on a farm came to: the parts in the order in which they were given out, the seconds that each took on its
+    worker, those of the whole, and what the time model had said."""
+    parts: list[Part]
+    part_seconds: list[float]
+    seconds: float
+    merge_seconds: float
+    workers: int
+    model: TimeModel
+    predicted_seconds: float
+
+    def json(self) -> str:
+        return json.dumps(asdict(self), indent=1)
+
+
+def timed_part(job: Job, part: Part, threads: int, digests: Sequence[str], *contents: bytes) -> tuple[bytes, float]:
+    """A part and the seconds that it took; on a worker."""
+    start = time.monotonic()
+    return render_part(job, part, threads, dict(zip(digests, contents))), time.monotonic() - start
+
+
+def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int) -> dict[Any, int]:
+    """A future for every part, with its number: the first ones are the first to be rendered."""
+    digests = sorted({f.digest for f in job.files})
+    by_digest = {f.digest: f for f in job.files}
+    sent = client.scatter([job.read(by_digest[d]) for d in digests], hash=True) if digests else []
+    return {client.submit(timed_part, job, part, threads, digests, *sent, key=f"part-{i}-{os.getpid()}", priority=-i,
+                          pure=False): i for i, part in enumerate(parts)}
+
+
+def collect(client: Any, futures: dict[Any, int], folder: str, parts: Sequence[Part],
+            progress: Callable[[float], None] | None) -> list[float]:
+    """Writes parts to files as they come, named by their numbers; the seconds of each. The first that fails ends it."""
+    seconds = [0.0] * len(parts)
+    work, done = sum(p.work() for p in parts), 0
+    for future in clusters.distributed_module().as_completed(futures):
+        number = futures[future]
+        if future.status != "finished":
+            client.cancel(list(futures))
+            raise future.exception()
+        state, seconds[number] = future.result()
+        with open(os.path.join(folder, f"{number}.part"), "wb") as f:
+            f.write(state)
+        future.release()
+        done += parts[number].work()
+        if progress:
+            progress(done / work)
+    return seconds
+
+
+def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers: int = 0, threads: int = 1,
+           scheduler: str = "", cluster: str = "local", cluster_options: str = "{}", shared: bool = False,
+           model: TimeModel | None = None, parts_in: str = "",
+           progress: Callable[[float], None] | None = None) -> Report:
+    """Renders a scene on many workers to `outfile` (the scene's own name without it), with the bits of a single render.
+
+    `flags` are those of `whit render` that a picture depends on. `threads` are those of a worker; `workers` 0 is as many as
+    this machine's cores let run. `shared`: the workers see the scene's files where they are here; else they travel, once to
+    each machine. `model`: the scene's time model, which is measured here for some seconds otherwise. `parts_in`: a folder in
+    which the parts stay. Raises FarmError with the program's words.
+    """
+    workers = workers or max(1, (os.cpu_count() or 1) // threads)
+    job = Job(os.path.abspath(scene), scene, tuple(flags))
+    width, height, samples = size_of(job)
+    model = model or measure(job, threads, (width, height, samples))
+    parts = cut(width, height, samples, workers, model)
+    if cluster != "local" or scheduler:
+        job = job if shared else job.with_files()
+    with tempfile.TemporaryDirectory(prefix="whit-farm-") as temporary:
+        folder = parts_in or temporary
+        os.makedirs(folder, exist_ok=True)
+        with clusters.client_of(scheduler, cluster, cluster_options, workers) as client:
+            started = time.monotonic()
+            seconds = collect(client, submit_all(client, job, parts, threads), folder, parts, progress)
+            rendered = time.monotonic()
+        merge(job, [os.path.join(folder, f"{i}.part") for i in range(len(parts))], outfile, [])
+        merged = time.monotonic()
+    return Report(parts, seconds, rendered - started, merged - rendered, workers, model,
+                  simulate(parts, workers, model, width * height))
+
+
+# ---- The command ----
+
+def arguments_of(words: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
+    parser = argparse.ArgumentParser(
+        prog="whit-farm", description="Renders a scene on many workers: bit by bit the picture of a single render.",
+        epilog="Flags behind -- are those of whit render that the picture depends on: whit-farm a.pbrt -- --spp 256 --aov N")
+    parser.add_argument("scene")
+    parser.add_argument("-o", "--outfile", default="", help="picture file, instead of the scene's")
+    parser.add_argument("--workers", type=int, default=0, help="how many (default: this machine's cores by --threads)")
+    parser.add_argument("--threads", type=int, default=1, help="threads of each worker (1)")
+    parser.add_argument("--scheduler", default="", metavar="ADDRESS", help="a Dask scheduler that is there: tcp://host:8786")
+    parser.add_argument("--cluster", default="local", choices=["local", *clusters.QUEUES], help="where workers are started")
+    parser.add_argument("--cluster-options", default="{}", metavar="JSON", help="arguments of the cluster's class in Dask")
+    parser.add_argument("--shared", action="store_true", help="workers see the scene's files where they are here")
+    parser.add_argument("--keep", default="", metavar="FOLDER", help="keep the parts there")
+    parser.add_argument("--json", default="", metavar="FILE", help="what it came to; - is standard output")
+    parser.add_argument("--simulate", type=int, default=0, metavar="N", help="render nothing: say how long N workers would take")
+    parser.add_argument("--slurm-script", default="", metavar="FILE", help="render nothing: write a job array for sbatch")
+    parser.add_argument("--quiet", action="store_true", help="no progress")
+    words = list(words)
+    at = words.index("--") if "--" in words else len(words)
+    return parser.parse_args(words[:at]), words[at + 1:]
+
+
+def show_progress(share: float) -> None:
+    print(f"\rwhit-farm: {100 * share:.0f} %", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
+
+
+def say_schedule(job: Job, args: argparse.Namespace) -> None:
+    """What the time model says of some workers, and of half and twice as many."""
+    width, height, samples = size_of(job)
+    model = measure(job, args.threads, (width, height, samples))
+    print(f"a part takes {model.fixed:.3g} s, a sample of every pixel {model.per_sample:.3g} s ({args.threads} threads)")
+    alone = model.fixed + samples * model.per_sample
+    for n in (max(1, args.simulate // 2), args.simulate, 2 * args.simulate):
+        parts = cut(width, height, samples, n, model)
+        seconds = simulate(parts, n, model, width * height)
+        print(f"{n:5d} workers: {len(parts)} parts, {seconds:.3g} s, {alone / seconds:.3g} times one worker, "
+              f"{100 * alone / seconds / n:.0f} % of the workers' time")
+
+
+def write_slurm_script(job: Job, args: argparse.Namespace) -> None:
+    width, height, samples = size_of(job)
+    parts = cut(width, height, samples, max(1, args.workers), measure(job, args.threads, (width, height, samples)))
+    text = slurm_script(job, parts, args.threads, os.path.abspath(args.outfile) if args.outfile else "",
+                        os.path.abspath(args.keep or args.slurm_script + ".parts"), program())
+    with open(args.slurm_script, "w", encoding="utf-8") as f:
+        f.write(text)
+    print(f"whit-farm: {args.slurm_script}: {len(parts)} parts; sbatch {args.slurm_script}, and when all are done "
+          f"bash {args.slurm_script} merge", file=sys.stderr)
+
+
+def run_command(args: argparse.Namespace, flags: list[str]) -> None:
+    job = Job(os.path.abspath(args.scene), args.scene, tuple(flags))
+    if args.simulate:
+        say_schedule(job, args)
+    elif args.slurm_script:
+        write_slurm_script(job, args)
+    else:
+        report = render(args.scene, args.outfile, flags=flags, workers=args.workers, threads=args.threads,
+                        scheduler=args.scheduler, cluster=args.cluster, cluster_options=args.cluster_options,
+                        shared=args.shared, parts_in=args.keep,
+                        progress=None if args.quiet else show_progress)
+        if args.json:
+            with open(1 if args.json == "-" else args.json, "w", encoding="utf-8", closefd=args.json != "-") as f:
+                f.write(report.json() + "\n")
+        if not args.quiet:
+            replayed = schedule(report.part_seconds, report.workers)
+            print(f"whit-farm: {len(report.parts)} parts on {report.workers} workers in {report.seconds:.3g} s (the time model: "
+                  f"{report.predicted_seconds:.3g} s; the parts' own times: {replayed:.3g} s), joined in "
+                  f"{report.merge_seconds:.3g} s", file=sys.stderr)
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    args, flags = arguments_of(sys.argv[1:] if words is None else words)
+    try:
+        run_command(args, flags)
+        return 0
+    except FarmError as e:
+        print(f"whit-farm: {e}", file=sys.stderr)
+        return e.code
+    except OSError as e:
+        print(f"whit-farm: {e}", file=sys.stderr)
+        return 4
+
+
+if __name__ == "__main__":
+    sys.exit(main())
