@@ -60,9 +60,11 @@ def collect(client: Any, futures: dict[Any, int], folder: str, parts: Sequence[P
     work, done = sum(p.work() for p in parts), 0
     for future in clusters.distributed_module().as_completed(futures):
         number = futures[future]
-        if future.status != "finished":
+        if future.status in ("error", "cancelled"):
+            problem = future.exception() if future.status == "error" else FarmError("the parts were cancelled")
             client.cancel(list(futures))
-            raise future.exception()
+            raise problem
+        # One that was lost with its worker since then is waited for.
         state, seconds[number] = future.result()
         with open(os.path.join(folder, f"{number}.part"), "wb") as f:
             f.write(state)

@@ -88,11 +88,10 @@ class Farm(unittest.TestCase):
         # The scheduler is somebody else's, so the workers are not thought to see this folder.
         import distributed
         self.write("scene.pbrt", package.SCENE.replace("WorldEnd", 'Include "more/things.pbrt"\nWorldEnd'))
-        self.write("more/things.pbrt", 'Translate 0 2 0\nShape "plymesh" "string filename" "a triangle.ply"\n')
+        self.write("more/things.pbrt", 'Translate 0 2 0\nShape "plymesh" "string filename" "more/a triangle.ply"\n')
         self.write("more/a triangle.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
                    "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
                    "-1 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
-        self.write("scene.pbrt", open(self.path("scene.pbrt"), encoding="utf-8").read())
         self.whole()
         job = Job(self.path("scene.pbrt"), "scene.pbrt", ()).with_files()
         self.assertEqual(sorted(f.name for f in job.files), ["more/a triangle.ply", "more/things.pbrt", "scene.pbrt"])
@@ -118,9 +117,9 @@ class Farm(unittest.TestCase):
         self.expect_the_same()
 
     def test_what_is_wrong_is_said(self):
-        self.write("bad.pbrt", package.SCENE.replace('"sphere"', '"sphere" "float radius" [-1]'))
+        self.write("bad.pbrt", package.SCENE.replace("[35]", "[400]"))
         for words, code, expected in (
-                ([self.path("bad.pbrt")], 3, "radius"), ([self.path("none.pbrt")], 4, "no such file"),
+                ([self.path("bad.pbrt")], 3, "fov"), ([self.path("none.pbrt")], 4, "no such file"),
                 ([self.path("scene.pbrt"), "--scheduler", "tcp://127.0.0.1:9"], 4, "127.0.0.1:9"),
                 ([self.path("scene.pbrt"), "--cluster", "slurm", "--cluster-options", "{"], 2, "JSON"),
                 ([self.path("scene.pbrt"), "--", "--aov", "nothing"], 2, "nothing")):
