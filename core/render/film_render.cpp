@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/batch/zero_pages.h"
+#include "core/render/borrowed_arena.h"
 #include "core/render/flush_denormals.h"
 #include "core/render/trace.h"
 #include "core/scene/alpha.h"
@@ -140,7 +141,7 @@ struct FilmRender::Impl {
   void on_threads(const Body& body) const {
     tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                 static_cast<size_t>(std::max(threads(), 1)));
-    tbb::task_arena arena(threads());
+    BorrowedArena arena(threads());
     arena.execute(body);
   }
 

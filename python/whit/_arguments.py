@@ -92,7 +92,7 @@ def command(scene: PathOrText, flags: Sequence[tuple[str, Any]]) -> str:
     >>> command("scene.pbrt", [("--spp", 4), ("--quick", False), ("--aov", ["N", "Z"])])
     'whit scene.pbrt --spp 4 --aov N,Z'
     """
-    words = ["whit", "-" if is_text(scene) else os.fspath(scene)]
+    words = ["whit", "-" if is_text(scene) else os.fsdecode(path(scene, "the scene"))]
     for flag, value in flags:
         if value is None or value is False or value == [] or value == "":
             continue

@@ -112,7 +112,7 @@ def measures() -> list[str]:
 
     >>> import whit
     >>> whit.measures()[:2]
-    ['relmse', 'relmse_robust']
+    ['relmse_robust', 'ratio']
     """
     return _whit.measure_names()
 

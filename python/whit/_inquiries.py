@@ -17,7 +17,7 @@ def check(scene: PathOrText, *, allow: Sequence[str] = (), also: Sequence[str] =
     >>> scene = whit._examples.SPHERE.replace('"sphere"', '"sphere" "float raduis" 2')
     >>> for found in whit.check(scene):
     ...     print(found.severity, found.line, found.message, found.remedy, sep="; ")
-    error; 8; sphere has no parameter "raduis"; did you mean "radius"?
+    warning; 8; sphere has no parameter "raduis"; did you mean "radius"?
 
     `allow` leaves findings of these names out (no error can be), `also` looks for what is not looked for by default.
     An empty list is a scene that is right. Errors of the scene are in the list; it raises UsageError alone.
@@ -36,7 +36,7 @@ def explain(scene: PathOrText, *, memory: bool = False, integrator: Optional[str
     >>> import whit
     >>> world, = whit.explain(whit._examples.SPHERE)["worlds"]
     >>> [e["effect"] for e in world["effects"] if e["on"]]
-    ['shadows']
+    ['diffuse', 'delta-lights', 'shadows']
 
     Raises SceneError, FileError, UsageError.
     """
@@ -47,6 +47,7 @@ def cost(scene: PathOrText, *, seconds: float = 60, quick: bool = False, all_sam
          seed: int = 0, html: Any = None, progress: Optional[Callable[[float], Any]] = None) -> dict[str, Any]:
     """What accuracy costs in time: measures for `seconds`, all in all, and returns the keys of `whit cost --json`.
 
+    scene: a path, or a text, as those of `render`.
     quick: samples alone, no other settings, no effects. all_samplers: every sampler.
     threads: 0 for one per core; it holds for the whole process meanwhile.
     html: a file for the report as a page.

@@ -7,6 +7,7 @@ import os
 import pathlib
 import pkgutil
 import re
+import sys
 import tempfile
 import unittest
 
@@ -63,6 +64,8 @@ class Notebook(unittest.TestCase):
         except ImportError:
             self.skipTest("no nbclient (tools/install-deps test)")
         notebook = nbformat.read(NOTEBOOK, as_version=4)
+        # The kernel is to be this Python.
+        os.environ["PATH"] = os.path.dirname(sys.executable) + os.pathsep + os.environ["PATH"]
         os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [os.environ.get("PYTHONPATH"), FOLDER]))
         with tempfile.TemporaryDirectory() as folder:
             nbclient.NotebookClient(notebook, timeout=120, kernel_name="python3",
