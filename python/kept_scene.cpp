@@ -290,7 +290,7 @@ std::unique_ptr<RenderedPicture> KeptScene::picture_of(RenderedWorld rendered, c
     picture->metadata.push_back(
         {"whit:incomplete", fmt::format("stopped with {:.3g} % of the samples", 100 * result.share)});
   }
-  picture->read = files_read(world());
+  picture->aovs = output.aovs, picture->read = files_read(world());
   picture->view = built_.scene->film().view(), picture->exposure = built_.scene->film().exposure();
   return picture;
 }

@@ -25,7 +25,8 @@ OutputRequest request_of(const RenderedPicture& picture, const SaveWish& wish) {
   request.ocio = wish.ocio;
   request.exposure = wish.exposure.value_or(picture.exposure);
   request.full_float = wish.full_float;
-  request.aovs = {"none"};  // The file has those that the picture has; the names were for making them.
+  request.aovs = picture.aovs;
+  if (request.aovs.empty() || !holds_layers(wish.path)) request.aovs = {"none"};
   request.read = picture.read;
   return request;
 }

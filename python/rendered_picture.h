@@ -20,6 +20,7 @@ struct RenderedPicture {
   std::optional<Json::Object> target;  ///< target_json(), where there was one.
   std::vector<Said> said;
   std::vector<OutputMetadata> metadata;
+  std::vector<std::string> aovs;  ///< Names of what `result` holds beside its colours.
   std::vector<std::string> read;  ///< Files of the scene, whose place no picture may take.
   std::string view;               ///< The film's.
   double exposure = 0;            ///< Likewise, in stops.
