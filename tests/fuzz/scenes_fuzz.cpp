@@ -28,7 +28,7 @@ void render(whit::SceneDescription world, const whit::Sources& sources) {
   whit::fuzz::limit(world);
   whit::PlannedWorld planned = whit::plan_world(world, sources);
   const bool has_errors = planned.said.has_errors();
-  require(whit::plan_memory(planned, {.texture_bytes = size_t{64} << 20, .film = {.threads = 1}}).total() > 0);
+  require(whit::plan_memory(planned, {.film = {.threads = 1}, .texture_bytes = size_t{64} << 20}).total() > 0);
   const whit::BuiltWorld built =
       whit::build_world(std::move(planned), {.samples_per_pixel = 1, .keep_going = true}, size_t{64} << 20);
   require(built.scene || has_errors || built.said.has_errors());
