@@ -49,8 +49,7 @@ def cost(scene: PathOrText, *, seconds: float = 60, quick: bool = False, all_sam
 
     scene: a path, or a text, as those of `render`.
     quick: samples alone, no other settings, no effects. all_samplers: every sampler.
-    threads: 0 for one per core; it holds for the whole process meanwhile.
-    seed: of the first of the pictures that are compared.
+    threads: 0 for one per core; it holds for the whole process meanwhile. seed: of the first picture, 0 to 2**32 - 1.
     html: a file for the report as a page.
     progress: as that of `render`; when it returns False the report has what was measured by then.
 
