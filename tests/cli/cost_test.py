@@ -69,7 +69,7 @@ class Cost(unittest.TestCase):
         self.assertIn("nRMSE", out)
         report = json.loads(self.read("r.json"))
         self.assertLessEqual(KEYS, set(report))
-        self.assertGreater(len(report["answers"]), 2)
+        self.assertGreater(len(report["answers"]), 0 if SLOW else 2)
         knobs = {s["knob"] for s in report["settings"]}
         self.assertLessEqual({"samples", "sampler", "maxdepth", "traversal"}, knobs)
         self.assertIn("shadows", {e["name"] for e in report["effects"]})
