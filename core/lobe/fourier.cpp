@@ -28,7 +28,7 @@ class Bytes {
   }
   template <class T>
   void take_all(T* to, size_t n) {
-    std::memcpy(to, rest_.data(), n * sizeof(T));
+    if (n > 0) std::memcpy(to, rest_.data(), n * sizeof(T));  // An empty list has no place to copy to.
     rest_.remove_prefix(n * sizeof(T));
   }
   size_t size() const { return rest_.size(); }
