@@ -19,8 +19,11 @@ def distributed_module() -> Any:
         import distributed
     except ImportError as e:
         raise FarmError("whit-farm needs Dask: pip install 'whit-render[farm]'", 2) from e
-    # A part whose worker is lost runs again, however often; by default three lost workers make a part a suspect.
-    dask.config.set({"distributed.scheduler.allowed-failures": 1000})
+    # A part whose worker is lost runs again, however often; by default three lost workers make a part a suspect. And workers
+    # that wait for a render need not look at themselves a hundred times a second.
+    dask.config.set({"distributed.scheduler.allowed-failures": 1000, "distributed.worker.profile.interval": "10s",
+                     "distributed.worker.profile.cycle": "100s", "distributed.admin.tick.interval": "1s",
+                     "distributed.admin.system-monitor.interval": "10s"})
     return distributed
 
 

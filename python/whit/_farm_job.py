@@ -105,24 +105,29 @@ def folder_of(job: Job) -> str:
                         key)
 
 
-def render_part(job: Job, part: Part, threads: int, contents: dict[str, bytes] | None = None) -> bytes:
-    """The bytes of a part, for `whit merge`. Runs on a worker."""
+def render_part(job: Job, part: Part, threads: int, contents: dict[str, bytes], keep: str = "") -> bytes:
+    """The bytes of a part, for `whit merge`; none where the worker sees the file `keep`, which they are put into. Runs on a
+    worker."""
     scene = job.scene
     if job.files:
         folder = folder_of(job)
         os.makedirs(folder, mode=0o700, exist_ok=True)
-        scene = unpack(job, contents or {}, folder)
+        scene = unpack(job, contents, folder)
     with tempfile.TemporaryDirectory(prefix="whit-part-") as work:
         state = os.path.join(work, "part")
         run([scene, *job.flags, *part.flags(), "--nthreads", str(threads), "--checkpoint", state, "--every", "1h", "--outfile",
              os.path.join(work, "part.exr"), "--display", "none", "--quiet"], folder=os.path.dirname(scene))
+        if keep:
+            shutil.move(state, keep + ".new")
+            os.replace(keep + ".new", keep)
+            return b""
         with open(state, "rb") as f:
             return f.read()
 
 
-def merge(job: Job, parts: list[str], outfile: str, extra: list[str]) -> None:
+def merge(job: Job, parts: list[str], outfile: str) -> None:
     """Joins the files of all parts to the picture."""
-    run(["merge", *parts, "--scene", job.given, "--quiet", *(["--outfile", outfile] if outfile else []), *extra])
+    run(["merge", *parts, "--scene", job.given, "--quiet", *(["--outfile", outfile] if outfile else [])])
 
 
 def figures_of(job: Job, part: Part | None, threads: int) -> dict[str, Any]:

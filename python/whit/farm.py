@@ -38,24 +38,26 @@ class Report:
         return json.dumps(asdict(self), indent=1)
 
 
-def timed_part(job: Job, part: Part, threads: int, digests: Sequence[str], *contents: bytes) -> tuple[bytes, float]:
+def timed_part(job: Job, part: Part, threads: int, keep: str, digests: Sequence[str], *contents: bytes) -> tuple[bytes, float]:
     """A part and the seconds that it took; on a worker."""
     start = time.monotonic()
-    return render_part(job, part, threads, dict(zip(digests, contents))), time.monotonic() - start
+    return render_part(job, part, threads, dict(zip(digests, contents)), keep), time.monotonic() - start
 
 
-def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int) -> dict[Any, int]:
-    """A future for every part, with its number: the first ones are the first to be rendered."""
+def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int, files: Sequence[str]) -> dict[Any, int]:
+    """A future for every part, with its number: the first ones are the first to be rendered. `files`: where workers put
+    parts; none where they do not see this machine's folders."""
     digests = sorted({f.digest for f in job.files})
     by_digest = {f.digest: f for f in job.files}
     sent = client.scatter([job.read(by_digest[d]) for d in digests], hash=True) if digests else []
-    return {client.submit(timed_part, job, part, threads, digests, *sent, key=f"part-{i}-{os.getpid()}", priority=-i,
+    keep = files or [""] * len(parts)
+    return {client.submit(timed_part, job, part, threads, keep[i], digests, *sent, key=f"part-{i}-{os.getpid()}", priority=-i,
                           pure=False): i for i, part in enumerate(parts)}
 
 
-def collect(client: Any, futures: dict[Any, int], folder: str, parts: Sequence[Part],
+def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: Sequence[Part],
             progress: Callable[[float], None] | None) -> list[float]:
-    """Writes parts to files as they come, named by their numbers; the seconds of each. The first that fails ends it."""
+    """Writes parts that come as bytes to their files; the seconds of each. The first that fails ends it."""
     seconds = [0.0] * len(parts)
     work, done = sum(p.work() for p in parts), 0
     for future in clusters.distributed_module().as_completed(futures):
@@ -66,8 +68,9 @@ def collect(client: Any, futures: dict[Any, int], folder: str, parts: Sequence[P
             raise problem
         # One that was lost with its worker since then is waited for.
         state, seconds[number] = future.result()
-        with open(os.path.join(folder, f"{number}.part"), "wb") as f:
-            f.write(state)
+        if state:
+            with open(files[number], "wb") as f:
+                f.write(state)
         future.release()
         done += parts[number].work()
         if progress:
@@ -91,16 +94,19 @@ def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers:
     width, height, samples = size_of(job)
     model = model or measure(job, threads, (width, height, samples))
     parts = cut(width, height, samples, workers, model)
-    if cluster != "local" or scheduler:
-        job = job if shared else job.with_files()
+    is_here = cluster == "local" and not scheduler
+    if not is_here and not shared:
+        job = job.with_files()
     with tempfile.TemporaryDirectory(prefix="whit-farm-") as temporary:
         folder = parts_in or temporary
         os.makedirs(folder, exist_ok=True)
+        files = [os.path.abspath(os.path.join(folder, f"{i}.part")) for i in range(len(parts))]
         with clusters.client_of(scheduler, cluster, cluster_options, workers) as client:
             started = time.monotonic()
-            seconds = collect(client, submit_all(client, job, parts, threads), folder, parts, progress)
+            futures = submit_all(client, job, parts, threads, files if is_here else [])
+            seconds = collect(client, futures, files, parts, progress)
             rendered = time.monotonic()
-        merge(job, [os.path.join(folder, f"{i}.part") for i in range(len(parts))], outfile, [])
+        merge(job, files, outfile)
         merged = time.monotonic()
     return Report(parts, seconds, rendered - started, merged - rendered, workers, model,
                   simulate(parts, workers, model, width * height))
