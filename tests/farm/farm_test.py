@@ -57,9 +57,7 @@ class Farm(unittest.TestCase):
 
         def progress(share):
             if not killed and share > 0.05:
-                found = subprocess.run(["pgrep", "-f", "multiprocessing.spawn|multiprocessing.forkserver"], capture_output=True,
-                                       text=True, check=False).stdout.split()
-                mine = [p for p in map(int, found) if os.path.exists(f"/proc/{p}") and _descends_from(p, os.getpid())]
+                mine = [p for p in _processes_with("spawn_main") if _descends_from(p, os.getpid())]
                 for pid in mine[-2:]:
                     os.kill(pid, signal.SIGKILL)
                     killed.append(pid)
@@ -142,12 +140,27 @@ def _said_by(words, code, test):
     return done.stderr
 
 
+def _processes_with(word):
+    found = []
+    for pid in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{pid}/cmdline", encoding="utf-8", errors="replace") as f:
+                if word in f.read():
+                    found.append(int(pid))
+        except OSError:
+            pass  # it has ended
+    return sorted(found)
+
+
 def _descends_from(pid, ancestor):
-    while pid > 1:
-        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as f:
-            pid = int(f.read().rpartition(")")[2].split()[1])
-        if pid == ancestor:
-            return True
+    try:
+        while pid > 1:
+            with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as f:
+                pid = int(f.read().rpartition(")")[2].split()[1])
+            if pid == ancestor:
+                return True
+    except OSError:
+        pass  # it has ended
     return False
 
 
