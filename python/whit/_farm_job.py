@@ -72,7 +72,7 @@ class Job:
     def with_files(self) -> "Job":
         """The same with its files, by what is in them."""
         names = [os.path.abspath(name) for name in json.loads(run(["check", "--files", "--json", self.scene]))["read"]]
-        root = os.path.dirname(os.path.commonpath([*names, self.scene])) if len(names) < 2 else os.path.commonpath(names)
+        root = os.path.commonpath([os.path.dirname(name) for name in names])
         return Job(self.scene, self.given, self.flags, root, tuple(SceneFile(os.path.relpath(n, root), digest(n)) for n in names))
 
     def read(self, file: SceneFile) -> bytes:

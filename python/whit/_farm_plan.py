@@ -69,7 +69,7 @@ def cut(width: int, height: int, samples: int, workers: int, model: TimeModel) -
                 break
             n = min(chunk, left[band])
             if left[band] - n < least:  # no rest that is hardly worth its start
-                n = left[band] if n + least > left[band] and left[band] < 2 * chunk else n
+                n = left[band]
             first = samples - left[band]
             parts.append(Part(0, width, *rows[band], first, first + n))
             left[band] -= n
