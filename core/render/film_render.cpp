@@ -25,9 +25,9 @@ namespace {
 constexpr int kChunk = 2048;
 /// Pixels on each side of what one thread renders at a time.
 constexpr int kTask = 16;
-/// Samples of a pixel that are taken before the next pixel's turn. Longer rounds keep rays together (4 % of the time on
-/// scenes/mesh.pbrt); a state can be saved between rounds only.
-constexpr uint32_t kRound = 1024;
+/// Samples of a pixel that are taken before the next pixel's turn. States are saved, and renders stopped, between rounds
+/// only. Longer ones keep rays together (4 % of the time on scenes/mesh.pbrt), where a filter keeps to its pixel.
+constexpr uint32_t kRound = 64, kLongRound = 1024;
 
 /// Processor seconds of this thread.
 double thread_seconds() {
@@ -198,7 +198,7 @@ struct FilmRender::Impl {
     take_alpha_tests();
     const auto [from, to] = begin_task(task);
     for (uint32_t at = from; at < to && !stopped;) {
-      const uint32_t end = std::min(to, at / kRound * kRound + kRound);
+      const uint32_t end = std::min(to, at / round * round + round);
       add_round(worker, task, at, end);
       at = end;
       if (at < to) report_progress();
@@ -442,6 +442,7 @@ struct FilmRender::Impl {
   const Scene& scene;
   RenderOptions options;
   FilterTable filter;
+  const uint32_t round = filter.is_own_pixel() ? kLongRound : kRound;
   const AovPlan aovs;
   tbb::enumerable_thread_specific<Worker> workers;
   tbb::enumerable_thread_specific<Chunk> chunks;
