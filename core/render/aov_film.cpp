@@ -18,8 +18,7 @@ void note(std::vector<Coverage>& coverage, const Coverage& more) {
   const auto before = [](const Coverage& c, uint32_t id) { return c.id < id; };
   auto at = std::lower_bound(coverage.begin(), coverage.end(), more.id, before);
   if (at == coverage.end() || at->id != more.id) at = coverage.insert(at, {more.id, 0, 0});
-  add_exactly(at->weight, at->rest, more.weight);
-  at->rest += more.rest;
+  add_exactly(at->weight, at->rest, more.weight, more.rest);
 }
 
 }  // namespace
@@ -132,10 +131,7 @@ void AovTile::merge(ByteReader& in, std::span<const size_t> things) {
   in.numbers(std::span(distance));
   in.numbers(std::span(nearest));
   in.numbers(std::span(samples));
-  for (size_t i = 0; i < sums.size(); ++i) {
-    add_exactly(sums_[i], rests_[i], sums[i]);
-    rests_[i] += rests[i];
-  }
+  for (size_t i = 0; i < sums.size(); ++i) add_exactly(sums_[i], rests_[i], sums[i], rests[i]);
   const size_t columns = plan_.columns.size() - plan_.means;
   for (size_t pixel = 0; pixel < distance.size(); ++pixel) {
     if (!(distance[pixel] < distance_[pixel])) continue;

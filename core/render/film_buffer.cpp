@@ -117,10 +117,7 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
 }
 
 void TileSums::halve_blocks() {
-  const auto join = [this](size_t to, size_t from) {
-    add_exactly(sums_[to], rests_[to], sums_[from]);
-    rests_[to] += rests_[from];
-  };
+  const auto join = [this](size_t to, size_t from) { add_exactly(sums_[to], rests_[to], sums_[from], rests_[from]); };
   constexpr size_t kBlock = 4;  // numbers of one
   for (size_t p = 0; p < numbers(); p += kBlocks * kBlock) {
     for (size_t c = p; c < p + kBlock; ++c) {
@@ -146,10 +143,7 @@ void TileSums::merge(ByteReader& in) {
   std::vector<float> rests(numbers());
   in.numbers(std::span(sums));
   in.numbers(std::span(rests));
-  for (size_t i = 0; i < sums.size(); ++i) {
-    add_exactly(sums_[i], rests_[i], sums[i]);
-    rests_[i] += rests[i];
-  }
+  for (size_t i = 0; i < sums.size(); ++i) add_exactly(sums_[i], rests_[i], sums[i], rests[i]);
 }
 
 void resolve_film(const FilmUnits& film, float scale, Picture& picture) {

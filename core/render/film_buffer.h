@@ -117,6 +117,11 @@ inline void add_exactly(double& sum, float& rest, double value) {
   rest += static_cast<float>((sum - (all - of_value)) + (value - of_value));
   sum = all;
 }
+/// Adds another sum of that kind.
+inline void add_exactly(double& sum, float& rest, double other, float others_rest) {
+  add_exactly(sum, rest, other);
+  rest += others_rest;
+}
 
 /// Where a tile's sums are: TileSums::numbers() doubles and as many floats, all 0.
 struct TileMemory {
