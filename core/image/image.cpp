@@ -14,6 +14,7 @@
 #include "core/base/file_state.h"
 #include "core/base/limits.h"
 #include "core/image/decode.h"
+#include "core/image/exr_header.h"
 #include "core/image/oiio/module.h"
 #include "core/image/picture_change.h"
 #include "core/image/signature.h"
@@ -107,8 +108,10 @@ std::unique_ptr<PictureRows> open_picture(const PictureFile& file) {
     case PictureKind::Png: return open_png(file);
     case PictureKind::Jpeg: return open_jpeg(file);
     case PictureKind::Tga: return open_tga(file);
-    default: return oiio().open(file);
+    default: break;
   }
+  if (const std::string problem = exr_header_problem(file); !problem.empty()) throw std::runtime_error(problem);
+  return oiio().open(file);
 }
 
 std::string picture_error(const std::string& path, const std::exception& e) {

@@ -11,6 +11,7 @@
 #include <filesystem>
 
 #include "core/image/decode.h"
+#include "core/image/exr_header.h"
 #include "core/image/mipmap.h"
 #include "core/image/signature.h"
 
@@ -69,6 +70,7 @@ std::optional<Header> header_of(const PictureFile& file) {
       const auto rows = open_picture(file);
       return Header{rows->info, rows->memory()};
     }
+    if (!exr_header_problem(file).empty()) return std::nullopt;
     if (!file.bytes && Imf::isOpenExrFile(file.path.c_str())) {
       // OpenImageIO hands out strips of 256 rows.
       Header header{exr_header(file.path), 0};

@@ -21,6 +21,7 @@
 
 #include "core/base/plain_text.h"
 #include "core/image/decode.h"
+#include "core/image/exr_header.h"
 #include "core/plugin/memory_limit.h"
 
 namespace whit {
@@ -159,6 +160,7 @@ void check_whole_numbers(const std::vector<Source>& sources, const PicturePlanes
 }  // namespace
 
 PicturePlanes read_exr_planes(const std::string& path) {
+  if (const std::string problem = exr_header_problem(path); !problem.empty()) throw std::runtime_error(problem);
   // Decompressing is most of it; Imf's own pool starts with no threads.
   const int threads = static_cast<int>(std::thread::hardware_concurrency());
   if (Imf::globalThreadCount() < threads) Imf::setGlobalThreadCount(threads);

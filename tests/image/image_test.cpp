@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "core/image/oiio/module.h"
+#include "core/image/planes.h"
 #include "tests/base/temp_folder.h"
 
 namespace whit {
@@ -133,6 +134,32 @@ TEST(ReadImage, errors_name_the_file_and_the_reason) {
   lying[12] = lying[14] = '\x60';
   lying[13] = lying[15] = '\xea';
   expect(write_temp("lying.tga", lying), "claims");
+}
+
+// An entry of an OpenEXR header: of `claimed` bytes, though what follows may be shorter.
+std::string exr_entry(const std::string& name, const std::string& type, uint32_t claimed, const std::string& value) {
+  std::string size(4, '\0');
+  for (size_t i = 0; i < 4; ++i) size[i] = static_cast<char>(claimed >> 8 * i);
+  return name + '\0' + type + '\0' + size + value;
+}
+
+// OpenEXR takes what an entry claims, nearly 2 GB here, before it finds the file at its end.
+TEST(ReadImage, entries_of_exr_headers_cannot_be_longer_than_the_file) {
+  const std::string magic = "\x76\x2f\x31\x01", one("\x02\0\0\0", 4), many("\x02\x10\0\0", 4), end(1, '\0');
+  const std::string good = exr_entry("owner", "string", 3, "abc"),
+                    lie = exr_entry("capDate", "string", 0x70000000, "x");
+  for (const std::string& bytes : {magic + one + lie, magic + one + good + lie, magic + many + good + end + lie}) {
+    const std::string path = write_temp("lying.exr", bytes);
+    const std::string claim =
+        "claims that \"capDate\" has 1879048192 bytes, but the file has only " + std::to_string(bytes.size());
+    for (const std::string& error : {read_image(path).error, probe_image(path).error, read_planes(path).error})
+      EXPECT_NE(error.find(claim), std::string::npos) << error;
+  }
+  // What follows the headers of one part, or of many, is none.
+  for (const std::string& bytes : {magic + one + good + end + lie, magic + many + good + end + end + lie}) {
+    const std::string error = read_image(write_temp("headless.exr", bytes)).error;
+    EXPECT_EQ(error.find("claims"), std::string::npos) << error;
+  }
 }
 
 TEST(ReadImage, a_truncated_file_is_an_error) {
