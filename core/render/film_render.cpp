@@ -349,7 +349,7 @@ struct FilmRender::Impl {
     return in.ok() && in.rest().empty();
   }
 
-  bool merge(ByteReader& in) {
+  bool merge(ByteReader& in, Gaps gaps) {
     if (in.value<decltype(layout())>() != layout()) return false;
     const auto from = in.value<uint32_t>();
     in.text();
@@ -360,9 +360,9 @@ struct FilmRender::Impl {
     each_unit_of_all(in, [&](size_t u) {
       const auto to = in.value<uint32_t>();
       in.value<UnitPass>();
-      if (have[u] != from || to < from) in.fail();
+      if ((have[u] != from && gaps == Gaps::None) || to < from) in.fail();
       if (!in.ok() || to == from) return;
-      have[u] = to;
+      have[u] += to - from;  // their number, which is what a mean needs
       sums[u].merge(in);
       if (aovs.any()) aov_tiles[u].merge(in, things);
     });
@@ -593,7 +593,7 @@ FilmPart FilmRender::part() const {
 
 void FilmRender::save(ByteWriter& out) const { impl_->save(out); }
 bool FilmRender::restore(ByteReader& in) { return impl_->restored = impl_->restore(in); }
-bool FilmRender::merge(ByteReader& in) { return impl_->merge(in); }
+bool FilmRender::merge(ByteReader& in, Gaps gaps) { return impl_->merge(in, gaps); }
 
 std::vector<FilmRender::Unit> FilmRender::units() const {
   std::vector<Unit> units;

@@ -48,10 +48,12 @@ class FilmRender {
   /// Makes a film on which nothing was rendered what another was of which this is the state: one of the same scene and
   /// options. False, and the film is of no use, when it is not.
   bool restore(ByteReader& in);
+  /// What a part that is merged may leave out: nothing, so that the picture has the bits of a render of all samples; or
+  /// samples anywhere, for looks at what there is, of which each pixel is the mean.
+  enum class Gaps { None, Allowed };
   /// Adds what another film saved: one of the same scene and options, but for RenderOptions::part, whose samples come
-  /// after those that there are, in every unit. The picture has the bits of a render of all of them, whatever the parts.
-  /// False, and the film is of no use, when it is not of that kind.
-  bool merge(ByteReader& in);
+  /// after those that there are, in every unit. False, and the film is of no use, when it is not of that kind.
+  bool merge(ByteReader& in, Gaps gaps = Gaps::None);
   /// Ends the pass that was under way in a state that was restored; what comes of it has the bits that it would have had
   /// there. As extend().
   bool go_on();

@@ -38,6 +38,7 @@ std::string unread_name(const OutputRequest& request, const std::filesystem::pat
 }
 
 void choose_names(const OutputRequest& request, const Film& film, OutputPlan& plan) {
+  if (request.unwritten) return;
   plan.main_file = !request.outfile.empty() ? request.outfile : film.file_name();
   if (plan.main_file.empty()) {
     const std::filesystem::path scene(request.scene_path);
@@ -58,7 +59,7 @@ void choose_aovs(const OutputRequest& request, const Film& film, OutputPlan& pla
   plan.aovs = by_film ? std::vector<std::string>(asked.values.begin(), asked.values.end()) : request.aovs;
   if (plan.aovs == std::vector<std::string>{"none"}) plan.aovs.clear();
   std::string problem = unknown_aov(plan.aovs);
-  if (problem.empty() && !plan.aovs.empty() && !holds_layers(plan.main_file))
+  if (problem.empty() && !plan.aovs.empty() && !request.unwritten && !holds_layers(plan.main_file))
     problem = fmt::format("\"{}\" cannot hold AOVs: only .exr files can; --aov none leaves them out", plan.main_file);
   if (problem.empty()) return;
   if (by_film) plan.said.error(asked.where, problem);
@@ -175,6 +176,7 @@ WrittenOutput write_output(const OutputPlan& plan, const RenderResult& result,
                            const std::vector<OutputMetadata>& metadata) {
   const Stopwatch watch;
   WrittenOutput out;
+  if (plan.main_file.empty()) return out;
   // Compressing is most of it, and there is more than one core.
   std::future<Diagnostics> display;
   if (!plan.display_file.empty()) {

@@ -22,6 +22,7 @@ struct OutputRequest {
   std::string display;             ///< --display FILE; "" derives it from the main file, "none" writes none.
   std::string view, ocio;          ///< --view, --ocio; "" takes the film's or the default.
   std::optional<double> exposure;  ///< --exposure; none takes the film's.
+  bool unwritten = false;          ///< --outfile none: what is rendered goes elsewhere.
   bool full_float = false;
   std::vector<std::string> aovs;  ///< --aov; none takes the film's, "none" alone writes none.
   std::vector<std::string> read;  ///< Files that the scene reads, files_read(): no picture may take the place of one.
@@ -33,7 +34,8 @@ std::vector<std::string> files_read(const SceneDescription& world);
 /// What a render writes and how. Where `said` has an error nothing should be rendered: it is at the Film statement if
 /// that asked for what cannot be had, else it has no place.
 struct OutputPlan {
-  std::string main_file;     ///< Linear (.exr, .pfm) or display-encoded (.png, ...), as the scene or --outfile says.
+  std::string
+      main_file;  ///< Linear (.exr, .pfm) or display-encoded (.png, ...), as the scene or --outfile says; or "".
   std::string display_file;  ///< The PNG beside a linear file; "" when there is none.
   bool full_float = false;
   std::unique_ptr<const DisplayTransform> display;

@@ -41,16 +41,18 @@ std::string pixels_text(const Box2i& box) {
   return fmt::format("pixels {} to {} of rows {} to {}", box.min.x, box.max.x - 1, box.min.y, box.max.y - 1);
 }
 
+double area(const Box2i& box) { return double{1} * (box.max.x - box.min.x) * (box.max.y - box.min.y); }
+
 bool overlap(const Box2i& a, const Box2i& b) {
   return a.min.x < b.max.x && b.min.x < a.max.x && a.min.y < b.max.y && b.min.y < a.max.y;
 }
 
 /// Why a file is no part of a picture like the first one's, or "".
 std::string problem_of(const CheckpointFile& file, const std::string& path, const CheckpointHead& first,
-                       const std::string& first_path) {
+                       const std::string& first_path, FilmRender::Gaps gaps) {
   const std::string other = difference(identity_of_whole(first.identity), identity_of_whole(file.head.identity));
   if (!other.empty()) return fmt::format("\"{}\" and \"{}\" are of different renders: {}", first_path, path, other);
-  if (!file.head.complete)
+  if (!file.head.complete && gaps == FilmRender::Gaps::None)
     return fmt::format("\"{}\" is of a render that has not ended; its command with --resume {} goes on with it", path,
                        shell_word(path));
   const FilmPart &a = first.part, &b = file.head.part;
@@ -65,7 +67,7 @@ std::string problem_of(const CheckpointFile& file, const std::string& path, cons
 }
 
 /// What is wrong with parts of one window, in the order of their samples; or "".
-std::string samples_problem(const std::vector<Part>& parts, uint32_t whole) {
+std::string samples_problem(const std::vector<Part>& parts, uint32_t whole, FilmRender::Gaps gaps) {
   uint32_t have = 0;
   const Part* before = nullptr;
   const auto missing = [&](uint32_t end) {
@@ -74,14 +76,14 @@ std::string samples_problem(const std::vector<Part>& parts, uint32_t whole) {
   };
   for (const Part& p : parts) {
     const SampleRange& s = p.of.samples;
-    if (s.first > have) return missing(s.first);
+    if (s.first > have && gaps == FilmRender::Gaps::None) return missing(s.first);
     if (s.first < have) {
       return fmt::format("{} of {} are in \"{}\" and in \"{}\"", samples_text(s.first, std::min(s.last, have)),
                          pixels_text(p.of.window), before->path, p.path);
     }
     have = s.last, before = &p;
   }
-  return have < whole ? missing(whole) : "";
+  return have < whole && gaps == FilmRender::Gaps::None ? missing(whole) : "";
 }
 
 bool comes_before(const Part& a, const Part& b) {
@@ -99,7 +101,7 @@ void sort_into_windows(std::vector<Part> parts, PartsPlan& plan) {
     const Box2i window = from->of.window;
     const auto to = std::find_if(from, parts.end(), [&](const Part& p) { return p.of.window != window; });
     const std::vector<Part> same(from, to);
-    plan.problem = samples_problem(same, plan.samples);
+    plan.problem = samples_problem(same, plan.samples, plan.gaps);
     for (const PartWindow& other : plan.windows) {
       if (!plan.problem.empty() || !overlap(other.window, window)) continue;
       plan.problem = fmt::format("\"{}\" has {}, and \"{}\" has {}: they overlap", other.paths.front(),
@@ -115,14 +117,14 @@ void sort_into_windows(std::vector<Part> parts, PartsPlan& plan) {
 /// The film of one window.
 class Joined {
  public:
-  Joined(const BuiltWorld& world, RenderOptions options, const PartWindow& of, Vec2i resolution) {
+  Joined(const BuiltWorld& world, RenderOptions options, const PartWindow& of, const PartsPlan& plan) {
     options.crop_given = true;
-    pixel_crop(of.window, resolution, options.crop);
+    pixel_crop(of.window, plan.resolution, options.crop);
     FilmRender film(*world.scene, options);
     for (const std::string& path : of.paths) {
       const CheckpointFile file(path);
       ByteReader in(file.state);
-      if (!film.merge(in)) problem_ = "its film is of another kind";
+      if (!film.merge(in, plan.gaps)) problem_ = "its film is of another kind";
       if (!file.problem.empty()) problem_ = file.problem;
       if (const std::string changed = file.file.problem(); !changed.empty()) problem_ = changed;
       if (problem_.empty()) continue;
@@ -172,8 +174,9 @@ RenderResult empty_like(const RenderResult& part, const Box2i& window) {
 
 }  // namespace
 
-PartsPlan plan_parts(const std::vector<std::string>& paths) {
+PartsPlan plan_parts(const std::vector<std::string>& paths, FilmRender::Gaps gaps) {
   PartsPlan plan;
+  plan.gaps = gaps;
   std::vector<Part> parts;
   CheckpointHead first;
   for (const std::string& path : paths) {
@@ -182,7 +185,7 @@ PartsPlan plan_parts(const std::vector<std::string>& paths) {
     plan.unreadable = !unreadable.empty();
     if (parts.empty()) first = file.head;
     plan.problem = plan.unreadable ? fmt::format("cannot join \"{}\": {}", path, unreadable)
-                                   : problem_of(file, path, first, parts.empty() ? path : parts.front().path);
+                                   : problem_of(file, path, first, parts.empty() ? path : parts.front().path, gaps);
     if (!plan.problem.empty()) return plan;
     parts.push_back({path, file.head.part});
   }
@@ -199,6 +202,7 @@ std::string identity_problem(const PartsPlan& plan, const RenderIdentity& here) 
 }
 
 std::string cover_problem(const PartsPlan& plan, const Box2i& wanted) {
+  const bool may_miss = plan.gaps == FilmRender::Gaps::Allowed;
   // Between neighbouring edges of windows either all pixels are in a window or none.
   std::set<int> xs{wanted.min.x, wanted.max.x}, ys{wanted.min.y, wanted.max.y};
   for (const PartWindow& w : plan.windows) {
@@ -209,7 +213,7 @@ std::string cover_problem(const PartsPlan& plan, const Box2i& wanted) {
     }
     xs.insert({w.window.min.x, w.window.max.x}), ys.insert({w.window.min.y, w.window.max.y});
   }
-  for (auto y = ys.begin(); std::next(y) != ys.end(); ++y) {
+  for (auto y = ys.begin(); !may_miss && std::next(y) != ys.end(); ++y) {
     for (auto x = xs.begin(); std::next(x) != xs.end(); ++x) {
       const Box2i cell({*x, *y}, {*std::next(x), *std::next(y)});
       const auto holds = [&](const PartWindow& w) { return overlap(w.window, cell); };
@@ -225,8 +229,9 @@ RenderedWorld join_parts(const BuiltWorld& world, RenderOptions options, const P
   const Stopwatch watch;
   RenderedWorld out;
   std::optional<RenderResult> whole;
+  double samples = 0;  // over all pixels
   for (const PartWindow& w : plan.windows) {
-    Joined joined(world, options, w, plan.resolution);
+    Joined joined(world, options, w, plan);
     if (!joined.problem().empty()) {
       out.said.file_error({}, joined.problem());
       return out;
@@ -234,12 +239,18 @@ RenderedWorld join_parts(const BuiltWorld& world, RenderOptions options, const P
     const RenderResult& part = joined.result();
     if (!whole) whole = empty_like(part, window);
     paste(part, *whole);
+    samples += part.samples_per_pixel * area(w.window);
     for (size_t m = 0; m < part.aovs.seen.size(); ++m)
       whole->aovs.seen[m].insert(part.aovs.seen[m].begin(), part.aovs.seen[m].end());
     whole->statistics.add(part.statistics);
     whole->seconds += part.seconds, whole->cpu_seconds += part.cpu_seconds;
   }
   if (whole) out.result = std::move(*whole);
+  if (plan.gaps == FilmRender::Gaps::Allowed) {
+    out.result.samples_per_pixel = samples / std::max(area(window), 1.0);
+    out.result.share = out.result.samples_per_pixel / std::max(plan.samples, 1u);
+    out.result.complete = out.result.share >= 1;
+  }
   set_matte_headers(*world.scene, AovPlan(*world.scene, options.aovs), options.aovs.place, out.result.aovs);
   out.elapsed = watch.elapsed();
   return out;

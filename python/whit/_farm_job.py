@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import time
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Sequence
 
 from ._farm_plan import Part, TimeModel
 
@@ -36,15 +36,29 @@ def program() -> str:
     raise FarmError("there is no program whit: install the wheel whit-render or the package, or set WHIT to its path")
 
 
+class Running:
+    """The program at work."""
+
+    def __init__(self, arguments: list[str], folder: str | None = None) -> None:
+        # Dask's workers have glibc give memory back all the time, for Python's sake: a tenth of a render.
+        environment = {k: v for k, v in os.environ.items() if k != "MALLOC_TRIM_THRESHOLD_"}
+        self._process = subprocess.Popen([program(), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                         stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=_end_with_parent)
+
+    def wait(self) -> tuple[str, str]:
+        """Its standard output, and what it said beside; FarmError with its words where it fails."""
+        out, said = self._process.communicate()
+        if self._process.returncode != 0:
+            raise FarmError(said.strip() or f"whit ended with {self._process.returncode}", self._process.returncode)
+        return out, said.strip()
+
+    def kill(self) -> None:
+        self._process.kill()
+
+
 def run(arguments: list[str], folder: str | None = None) -> str:
     """Standard output of the program; FarmError with its words where it fails."""
-    # Dask's workers have glibc give memory back all the time, for Python's sake: a tenth of a render.
-    environment = {k: v for k, v in os.environ.items() if k != "MALLOC_TRIM_THRESHOLD_"}
-    done = subprocess.run([program(), *arguments], cwd=folder, capture_output=True, text=True, check=False,
-                          stdin=subprocess.DEVNULL, env=environment, preexec_fn=_end_with_parent)
-    if done.returncode != 0:
-        raise FarmError(done.stderr.strip() or f"whit ended with {done.returncode}", done.returncode)
-    return done.stdout
+    return Running(arguments, folder).wait()[0]
 
 
 def _end_with_parent() -> None:
@@ -118,7 +132,7 @@ def render_part(job: Job, part: Part, threads: int, contents: dict[str, bytes], 
     with tempfile.TemporaryDirectory(prefix="whit-part-") as work:
         state = os.path.join(work, "part")
         run([scene, *job.flags, *part.flags(), "--nthreads", str(threads), "--checkpoint", state, "--every", "1h", "--outfile",
-             os.path.join(work, "part.exr"), "--display", "none", "--quiet"], folder=os.path.dirname(scene))
+             "none", "--quiet"], folder=os.path.dirname(scene))
         if keep:
             shutil.move(state, keep + ".new")
             os.replace(keep + ".new", keep)
@@ -127,9 +141,10 @@ def render_part(job: Job, part: Part, threads: int, contents: dict[str, bytes], 
             return f.read()
 
 
-def merge(job: Job, parts: list[str], outfile: str) -> None:
-    """Joins the files of all parts to the picture."""
-    run(["merge", *parts, "--scene", job.given, "--quiet", *(["--outfile", outfile] if outfile else [])])
+def merge(job: Job, parts: list[str], outfile: str, flags: Sequence[str] = ()) -> str:
+    """Joins the files of all parts to the picture; what there was to say of it."""
+    return Running(["merge", *parts, "--scene", job.given, "--quiet", *(["--outfile", outfile] if outfile else []),
+                    *flags]).wait()[1]
 
 
 def figures_of(job: Job, part: Part | None, threads: int) -> dict[str, Any]:
@@ -140,7 +155,7 @@ def figures_of(job: Job, part: Part | None, threads: int) -> dict[str, Any]:
         stats = os.path.join(work, "stats.json")
         start = time.monotonic()
         run([job.scene, *job.flags, *flags, "--nthreads", str(threads), "--checkpoint", os.path.join(work, "part"), "--every",
-             "1h", "--outfile", os.path.join(work, "part.exr"), "--display", "none", "--quiet", "--stats=" + stats])
+             "1h", "--outfile", "none", "--quiet", "--stats=" + stats])
         elapsed = time.monotonic() - start
         with open(stats, encoding="utf-8") as f:
             return {**json.load(f), "elapsed": elapsed}

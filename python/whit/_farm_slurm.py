@@ -33,7 +33,7 @@ state=$folder/$n.part
 keep=(--checkpoint "$state")
 [[ ! -e $state ]] || keep=(--resume "$state")
 # shellcheck disable=SC2086  # a part is several words
-exec "$whit" {scene}{flags} ${{parts[n]}} "${{keep[@]}}" --nthreads {threads} --outfile "$folder/$n.exr" --display none --quiet
+exec "$whit" {scene}{flags} ${{parts[n]}} "${{keep[@]}}" --nthreads {threads} --outfile none --quiet
 """
 
 

@@ -11,12 +11,14 @@ import os
 import sys
 import tempfile
 import time
+import warnings
 from dataclasses import asdict, dataclass
 from typing import Any, Callable, Sequence
 
 from . import _farm_clusters as clusters
 from ._farm_job import FarmError, Job, measure, merge, program, render_part, size_of
 from ._farm_plan import Part, TimeModel, cut, schedule, simulate
+from ._farm_preview import Preview
 from ._farm_slurm import slurm_script
 
 __all__ = ["FarmError", "Report", "render", "main"]
@@ -25,7 +27,7 @@ __all__ = ["FarmError", "Report", "render", "main"]
 @dataclass
 class Report:
     """What a render on a farm came to: the parts in the order in which they were given out, the seconds that each took on its
-    worker, those of the whole, and what the time model had said."""
+    worker, those of the whole, what the time model had said, and the seconds that previews took beside."""
     parts: list[Part]
     part_seconds: list[float]
     seconds: float
@@ -33,6 +35,7 @@ class Report:
     workers: int
     model: TimeModel
     predicted_seconds: float
+    preview_seconds: float = 0
 
     def json(self) -> str:
         return json.dumps(asdict(self), indent=1)
@@ -56,7 +59,7 @@ def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int, files
 
 
 def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: Sequence[Part],
-            progress: Callable[[float], None] | None) -> list[float]:
+            progress: Callable[[float], None] | None, preview: Preview) -> list[float]:
     """Writes parts that come as bytes to their files; the seconds of each. The first that fails ends it."""
     seconds = [0.0] * len(parts)
     work, done = sum(p.work() for p in parts), 0
@@ -72,6 +75,7 @@ def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: S
             with open(files[number], "wb") as f:
                 f.write(state)
         future.release()
+        preview.add(files[number])
         done += parts[number].work()
         if progress:
             progress(done / work)
@@ -80,14 +84,15 @@ def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: S
 
 def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers: int = 0, threads: int = 1,
            scheduler: str = "", cluster: str = "local", cluster_options: str = "{}", shared: bool = False,
-           model: TimeModel | None = None, parts_in: str = "",
-           progress: Callable[[float], None] | None = None) -> Report:
+           model: TimeModel | None = None, parts_in: str = "", display_server: str = "",
+           progress: Callable[[float], None] | None = None, warn: Callable[[str], None] = warnings.warn) -> Report:
     """Renders a scene on many workers to `outfile` (the scene's own name without it), with the bits of a single render.
 
     `flags` are those of `whit render` that a picture depends on. `threads` are those of a worker; `workers` 0 is as many as
     this machine's cores let run. `shared`: the workers see the scene's files where they are here; else they travel, once to
     each machine. `model`: the scene's time model, which is measured here for some seconds otherwise. `parts_in`: a folder in
-    which the parts stay. Raises FarmError with the program's words.
+    which the parts stay. `display_server`: host:port of a tev viewer that shows the picture while it is made; one that fails
+    is told of by `warn`, and ends nothing. Raises FarmError with the program's words.
     """
     workers = workers or max(1, (os.cpu_count() or 1) // threads)
     job = Job(os.path.abspath(scene), scene, tuple(flags))
@@ -101,15 +106,16 @@ def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers:
         folder = parts_in or temporary
         os.makedirs(folder, exist_ok=True)
         files = [os.path.abspath(os.path.join(folder, f"{i}.part")) for i in range(len(parts))]
-        with clusters.client_of(scheduler, cluster, cluster_options, workers) as client:
+        with clusters.client_of(scheduler, cluster, cluster_options, workers) as client, Preview(
+                job, display_server, warn) as preview:
             started = time.monotonic()
             futures = submit_all(client, job, parts, threads, files if is_here else [])
-            seconds = collect(client, futures, files, parts, progress)
+            seconds = collect(client, futures, files, parts, progress, preview)
             rendered = time.monotonic()
-        merge(job, files, outfile)
+        preview.note(merge(job, files, outfile, preview.end()))
         merged = time.monotonic()
     return Report(parts, seconds, rendered - started, merged - rendered, workers, model,
-                  simulate(parts, workers, model, width * height))
+                  simulate(parts, workers, model, width * height), preview.seconds)
 
 
 # ---- The command ----
@@ -126,6 +132,7 @@ def arguments_of(words: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
     parser.add_argument("--cluster", default="local", choices=["local", *clusters.QUEUES], help="where workers are started")
     parser.add_argument("--cluster-options", default="{}", metavar="JSON", help="arguments of the cluster's class in Dask")
     parser.add_argument("--shared", action="store_true", help="workers see the scene's files where they are here")
+    parser.add_argument("--display-server", default="", metavar="HOST:PORT", help="show the picture while it is made: a tev viewer")
     parser.add_argument("--keep", default="", metavar="FOLDER", help="keep the parts there")
     parser.add_argument("--json", default="", metavar="FILE", help="what it came to; - is standard output")
     parser.add_argument("--simulate", type=int, default=0, metavar="N", help="render nothing: say how long N workers would take")
@@ -138,6 +145,10 @@ def arguments_of(words: Sequence[str]) -> tuple[argparse.Namespace, list[str]]:
 
 def show_progress(share: float) -> None:
     print(f"\rwhit-farm: {100 * share:.0f} %", end="\n" if share >= 1 else "", file=sys.stderr, flush=True)
+
+
+def show_warning(text: str) -> None:
+    print(f"\nwhit-farm: {text}", file=sys.stderr, flush=True)
 
 
 def say_schedule(job: Job, args: argparse.Namespace) -> None:
@@ -173,8 +184,8 @@ def run_command(args: argparse.Namespace, flags: list[str]) -> None:
     else:
         report = render(args.scene, args.outfile, flags=flags, workers=args.workers, threads=args.threads,
                         scheduler=args.scheduler, cluster=args.cluster, cluster_options=args.cluster_options,
-                        shared=args.shared, parts_in=args.keep,
-                        progress=None if args.quiet else show_progress)
+                        shared=args.shared, parts_in=args.keep, display_server=args.display_server,
+                        progress=None if args.quiet else show_progress, warn=show_warning)
         if args.json:
             with open(1 if args.json == "-" else args.json, "w", encoding="utf-8", closefd=args.json != "-") as f:
                 f.write(report.json() + "\n")

@@ -3,9 +3,14 @@ joined is named. Parts are made by --sample-range and --crop-pixels, which are t
 import json
 import os
 import re
+import struct
 import subprocess
+import sys
 import tempfile
 import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
+from viewer import Viewer  # noqa: E402
 
 WHIT = os.environ.get("WHIT", "")
 
@@ -202,6 +207,82 @@ class Merge(unittest.TestCase):
                 (["--crop-pixels", "0", "5", "0", "7", "--pixel", "1,1"], "one of them will do")):
             with self.subTest(flags=flags):
                 self.assertIn(words, self.render(*flags, code=2))
+
+    def test_what_is_there_so_far(self):
+        # Rows 0 to 9 have 9 of 16 samples, the last pixels of the others 1, and all others none: a picture of each part has
+        # the same bits where it is, and there is black where there is none.
+        names = [self.part("a", "--sample-range", "3:12", "--crop-pixels", "0", "41", "0", "10"),
+                 self.part("b", "--sample-range", "15:16", "--crop-pixels", "30", "41", "10", "27")]
+        said = self.whit("merge", *names, "--so-far", "--outfile", "so-far.pfm", "--display", "none")
+        share = 100 * (9 * 41 * 10 + 11 * 17) / (16 * 41 * 27)
+        self.assertIn(f"{share:.3g} % of the samples are there, the rest is in no part", said)
+        self.merge("a", "--so-far", "--outfile", "a.pfm"), self.merge("b", "--so-far", "--outfile", "b.pfm")
+        pictures = [self.pixels(n) for n in ("so-far.pfm", "a.pfm", "b.pfm")]
+        self.render("--outfile", "c.pfm", "--sample-range", "3:12", "--crop-pixels", "0", "41", "0", "10")
+        # A .pfm begins with the lowest row.
+        self.assertEqual(pictures[1][3 * 41 * 17:], self.pixels("c.pfm"))
+        for together, a, b in zip(*pictures):
+            self.assertIn(together, (a, b))
+            self.assertIn(0, (a, b))
+
+    def test_parts_between_which_samples_are_missing_so_far(self):
+        # The mean of samples 0 to 3 and 12 to 15 is that of both halves, but for three roundings of floats.
+        names = [self.part("a", "--sample-range", "0:4"), self.part("b", "--sample-range", "12:16")]
+        self.merge(*names, "--so-far", "--outfile", "both.pfm"), self.merge("a", "--so-far", "--outfile", "a.pfm")
+        self.merge("b", "--so-far", "--outfile", "b.pfm")
+        for both, a, b in zip(*(self.pixels(n) for n in ("both.pfm", "a.pfm", "b.pfm"))):
+            self.assertAlmostEqual(both, (a + b) / 2, delta=4 * 2**-24 * max(both, 1e-30))
+        self.merge("b", "--so-far", "--outfile", "b.exr")
+        with open(self.path("b.exr"), "rb") as f:
+            self.assertIn(b"25 % of the samples are there", f.read())
+        # What overlaps is refused as ever, and all of it together is the whole, header and all.
+        self.assertRegex(self.merge("a", "a", "--so-far", "--outfile", "n.exr", code=2), 'are in "a" and in "a"')
+        self.render("--outfile", "whole.exr")
+        self.merge(*names, self.part("c", "--sample-range", "4:12"), "--so-far", "--outfile", "merged.exr")
+        self.assertTrue(self.same_files("merged.exr", "whole.exr"))
+
+    def test_a_part_that_has_not_ended_so_far(self):
+        process = subprocess.Popen([WHIT, "scene.pbrt", "--spp", "1000000", "--checkpoint", "unfinished", "--every", "0.05s",
+                                    "--outfile", "none", "--quiet"], cwd=self.folder)
+        try:
+            while not os.path.exists(self.path("unfinished")):
+                self.assertIsNone(process.poll())
+        finally:
+            process.kill()
+            process.wait()
+        self.merge("unfinished", "--so-far", "--outfile", "so-far.pfm")
+        self.assertGreater(max(self.pixels("so-far.pfm")), 0)
+
+    def test_a_viewer_sees_what_is_there(self):
+        viewer = Viewer()
+        self.addCleanup(viewer.close)
+        flags = ["--so-far", "--outfile", "none", "--display-server", viewer.address]
+        self.merge(self.part("a", "--sample-range", "0:4"), *flags)
+        self.merge("a", self.part("b", "--sample-range", "12:16"), *flags, "--shown")
+        self.assertEqual(viewer.made, [("scene.pbrt", 41, 27)])  # the second found it there
+        self.assertEqual([u[:2] for u in viewer.updates], [(c, (0, 0, 41, 27)) for c in "RGBRGB"])
+        self.merge("a", "b", "--so-far", "--outfile", "both.pfm")
+        rows = self.pixels("both.pfm")
+        red = [rows[3 * (41 * y + x)] for y in range(26, -1, -1) for x in range(41)]
+        self.assertEqual(list(struct.unpack("<1107f", viewer.updates[3][2])), red)
+        self.assertIn("none is named", self.merge("a", "b", "--so-far", "--shown", code=2))
+        said = self.merge("a", "b", "--so-far", "--outfile", "none", "--display-server", "127.0.0.1:9")
+        self.assertIn("warning: cannot reach display server 127.0.0.1:9", said)
+
+    def pixels(self, name):
+        with open(self.path(name), "rb") as f:
+            data = f.read()
+        data = data[data.index(b"-1.0\n") + 5:]
+        return list(struct.unpack(f"<{len(data) // 4}f", data))
+
+    def test_no_picture(self):
+        before = set(os.listdir(self.folder))
+        self.render("--outfile", "none", "--checkpoint", "a", "--aov", "N", "--sample-range", "0:4")
+        self.render("--outfile", "none", "--stats=-")
+        self.assertEqual(set(os.listdir(self.folder)) - before, {"a"})
+        self.assertIn("nothing would come of it", self.render("--outfile", "none", code=2))
+        # Where the state cannot be kept either there is nothing to show for the render: /dev/full takes no file.
+        self.render("--outfile", "none", "--checkpoint", "/dev/full/a", code=4)
 
     def test_figures_are_of_all_parts(self):
         self.render("--stats=whole.json", "--outfile", "whole.exr")

@@ -10,6 +10,7 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
 import package  # noqa: E402  (finds the package)
+from viewer import Viewer  # noqa: E402
 from whit import farm  # noqa: E402
 from whit._farm_job import Job, folder_of  # noqa: E402
 from whit._farm_plan import TimeModel  # noqa: E402
@@ -81,6 +82,30 @@ class Farm(unittest.TestCase):
         with open(self.path("r.json"), encoding="utf-8") as f:
             report = json.load(f)
         self.assertEqual(len(os.listdir(self.path("parts"))), len(report["parts"]))
+
+    def test_a_viewer_sees_the_picture(self):
+        # While parts come in, and the whole in the end, which is opened once.
+        viewer = Viewer()
+        self.addCleanup(viewer.close)
+        self.whole("--spp", "64")
+        looked = []
+        report = farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=["--spp", "64"], workers=2,
+                             model=TimeModel(0.01, 0.2), display_server=viewer.address, warn=self.fail,
+                             progress=lambda _: looked.append(len(viewer.updates)))
+        self.expect_the_same()
+        self.assertEqual([m[1:] for m in viewer.made], [(40, 30)])
+        self.assertGreater(looked[-1], 0)  # before all parts were there
+        self.assertGreater(report.preview_seconds, 0)
+        self.assertEqual(viewer.updates[-1][:2], ("B", (0, 0, 40, 30)))
+
+    def test_no_viewer_is_one_warning(self):
+        self.whole("--spp", "64")
+        said = []
+        farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=["--spp", "64"], workers=2, model=TimeModel(0.01, 0.2),
+                    display_server="127.0.0.1:9", warn=said.append)
+        self.expect_the_same()
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("cannot reach display server 127.0.0.1:9", said[0])
 
     def test_files_travel_once_by_what_is_in_them(self):
         # The scheduler is somebody else's, so the workers are not thought to see this folder.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <sys/socket.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <bit>
@@ -30,6 +31,8 @@ class Packet {
   std::vector<char> bytes;
 };
 
+/// What nobody takes for so long stops no render any longer.
+constexpr timeval kPatience{5, 0};
 constexpr const char* kChannels[3] = {"R", "G", "B"};
 
 }  // namespace
@@ -48,10 +51,12 @@ std::string DisplayServer::connect(const std::string& address) {
   std::string why = "no address";
   for (const addrinfo* a = found; a && socket_ < 0; a = a->ai_next) {
     const int s = ::socket(a->ai_family, a->ai_socktype, a->ai_protocol);
+    // The time to send has connecting in it (socket(7)).
+    if (s >= 0) ::setsockopt(s, SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
     if (s >= 0 && ::connect(s, a->ai_addr, a->ai_addrlen) == 0) {
       socket_ = s;
     } else {
-      why = std::strerror(errno);
+      why = errno == EINPROGRESS ? "it does not answer" : std::strerror(errno);
       if (s >= 0) ::close(s);
     }
   }
@@ -70,6 +75,11 @@ void DisplayServer::create(const std::string& name, Vec2i size) {
   p.put(int32_t{3});
   for (const char* c : kChannels) p.put(std::string(c));
   send_message(p.bytes);
+}
+
+void DisplayServer::go_on(const std::string& name) {
+  std::lock_guard lock(mutex_);
+  name_ = name;
 }
 
 void DisplayServer::update(const Box2i& window, std::span<const float> rgb) {

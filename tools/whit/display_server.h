@@ -12,7 +12,8 @@
 
 namespace whit {
 
-/// A connection to a viewer. All calls may come from any thread. After the first failure nothing more is sent.
+/// A connection to a viewer. All calls may come from any thread. After the first failure nothing more is sent, and a viewer
+/// that takes nothing for some seconds has failed.
 class DisplayServer {
  public:
   DisplayServer() = default;
@@ -25,6 +26,8 @@ class DisplayServer {
 
   /// Opens a picture of that name and size in the viewer.
   void create(const std::string& name, Vec2i size);
+  /// The same with one that an earlier connection opened.
+  void go_on(const std::string& name);
 
   /// Replaces a rectangle of it: linear RGB, row by row.
   void update(const Box2i& window, std::span<const float> rgb);

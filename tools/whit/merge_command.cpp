@@ -24,9 +24,9 @@ std::string seen_from_here(const std::string& word, const std::string& folder) {
 
 /// Flags of pictures that are given on to the render's command as they are.
 struct OutputWords {
-  std::string outfile, display, type, view, stats;
+  std::string outfile, display, type, view, stats, display_server;
   int threads = 0;
-  bool quiet = false;
+  bool so_far = false, shown = false, quiet = false;
 
   Arguments words() const {
     Arguments out;
@@ -34,7 +34,8 @@ struct OutputWords {
                                       {"--display", display},
                                       {"--type", type},
                                       {"--view", view},
-                                      {"--stats", stats}}) {
+                                      {"--stats", stats},
+                                      {"--display-server", display_server}}) {
       if (!value.empty()) out.push_back(fmt::format("{}={}", flag, value));
     }
     if (threads > 0) out.push_back(fmt::format("--nthreads={}", threads));
@@ -70,19 +71,30 @@ int merge_command(const Arguments& args) {
        {"--display", &output.display, "Display picture beside a linear one; 'none' for none", {.files = "png jpg"}},
        {"--type", &output.type, "Numbers of an .exr: half or float", {.choices = {"half", "float"}}},
        {"--view", &output.view, "Display view, as of whit render"},
+       {"--so-far", &output.so_far,
+        "Join what there is: samples and pixels may be missing, and parts need not have ended. A pixel is the mean of "
+        "its "
+        "samples, and black without any"},
+       {"--display-server", &output.display_server, "Show the picture: host:port of a tev viewer"},
+       {"--shown", &output.shown,
+        "With --display-server: an earlier call has opened it there; this one brings it up to date"},
        {"--scene", &scene, "Where the scene is now, if it is not where the parts found it", {.files = "pbrt gltf glb"}},
        {"--nthreads", &output.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
        {"--stats", &output.stats, "Figures of all parts together as JSON: a file, or - for stdout", {.files = "json"}},
        {"--quiet", &output.quiet, "No summary; problems are still reported"}}};
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
-  const PartsPlan plan = plan_parts(paths);
+  if (output.shown && output.display_server.empty()) {
+    say("whit merge: --shown is of the picture that --display-server shows, and none is named");
+    return kUsage;
+  }
+  const PartsPlan plan = plan_parts(paths, output.so_far ? FilmRender::Gaps::Allowed : FilmRender::Gaps::None);
   if (!plan.problem.empty()) {
     say("whit merge: " + plan.problem);
     return plan.unreadable ? kFileError : kUsage;
   }
   RenderSettings settings;
-  settings.parts = &plan;
+  settings.parts = &plan, settings.shown = output.shown;
   if (!read_render_flags(command_of_whole(plan, scene, output), settings, code)) return code;
   before.flags = reading_flags.elapsed();
   return render_scenes(settings, before);

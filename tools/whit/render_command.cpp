@@ -35,7 +35,7 @@ SandboxRequest sandbox_request(const RenderSettings& s) {
   for (const std::string& scene : s.scenes) request.read.push_back(folder_to_read(scene));
   request.read.push_back(s.output.ocio);
   if (const char* config = std::getenv("OCIO")) request.read.emplace_back(config);
-  request.write = {s.output.outfile.empty() ? "picture" : s.output.outfile,
+  request.write = {s.output.outfile.empty() && !s.output.unwritten ? "picture" : s.output.outfile,
                    s.output.display == "none" ? "" : s.output.display,
                    s.stats_file,
                    s.target.json,

@@ -122,7 +122,7 @@ std::vector<Flag> flags_of(RenderSettings& s) {
       {"scenes", &s.scenes, "Scene files or glTF models; standard input without any"},
       {"--outfile,-o",
        &s.output.outfile,
-       "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display)",
+       "Picture file: .exr .pfm (linear) .png .jpg .tga .tiff (display); 'none' for none",
        {.files = kPictures}},
       {"--display",
        &s.output.display,
@@ -259,6 +259,9 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.output.outfile.empty() && s.scenes.size() > 1) {
     return "--outfile with several scenes would write them over each other";
   }
+  if (s.output.unwritten && !s.checkpoint.any() && s.display_server.empty() && s.stats_file.empty() &&
+      s.target.json.empty())
+    return "--outfile none: nothing would come of it; name a --checkpoint, a --display-server or --stats FILE.json";
   if (!s.max_memory.empty() && size_of(s.max_memory) == 0)
     return fmt::format("--max-memory: \"{}\" is no size above 0; write 512M, 1G or bytes", s.max_memory);
   if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
@@ -350,6 +353,7 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   settings.picture_words = picture_words(words);
   settings.picture_command = fmt::format("whit {}", fmt::join(settings.picture_words, " "));
   settings.of_samples = flags_of_samples(command.flags);
+  if (settings.output.outfile == "none") settings.output.outfile.clear(), settings.output.unwritten = true;
   if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;
   if (settings.scenes.empty()) settings.scenes.push_back("-");

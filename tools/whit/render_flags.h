@@ -44,6 +44,7 @@ struct RenderSettings {
   std::vector<int> pixel;
   std::string sample_range;          ///< As given: samples_of(); "" for all.
   const PartsPlan* parts = nullptr;  ///< Of which the picture is made, in the place of samples.
+  bool shown = false;                ///< The display server has the picture of an earlier command.
   std::string debug_pixel;
   EffectFlags effects;
   ModelFlags model;

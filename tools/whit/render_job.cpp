@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <new>
 #include <optional>
@@ -157,7 +158,7 @@ class RenderJob {
     OutputPlan output = plan_output(output_request(world), planned.bound.film);
     if (settings_.denoiser && !output.said.has_errors()) {
       render_guides(output);
-      denoised_ = plan_denoised(output_request(world), output, planned.bound.film);
+      if (!settings_.output.unwritten) denoised_ = plan_denoised(output_request(world), output, planned.bound.film);
       output.said.append(denoised_.said);
     }
     times_.output = planning_output.elapsed();
@@ -222,7 +223,7 @@ class RenderJob {
     film.quick = settings_.quick;
     film.aovs = output.rendered_aovs();
     film.blocks = settings_.target.any(), film.adaptive = !settings_.target.error.empty();
-    film.linear = is_linear_format(output.main_file);
+    film.linear = settings_.output.unwritten || is_linear_format(output.main_file);
     film.display = !film.linear || !output.display_file.empty();
     return request;
   }
@@ -251,7 +252,8 @@ class RenderJob {
     if (int code = check_part(*built.scene, options); code != kDone) return code;
     const RenderedWorld rendered = settings_.parts ? join(built, options) : trace(built, options);
     if (int code = write_and_say(built, rendered, output, viewer); code != kDone) return code;
-    return rendered.result.complete ? kDone : say_stopped(rendered.result);
+    if (rendered.result.complete) return kDone;
+    return settings_.parts ? say_missing(rendered.result) : say_stopped(rendered.result);
   }
 
   /// Takes the part of the picture that the flags ask for, which must be one; and parts that are joined must make up all
@@ -323,6 +325,16 @@ class RenderJob {
     return kLimit;
   }
 
+  /// Of parts that were joined before all were there.
+  int say_missing(const RenderResult& result) const {
+    if (!settings_.quiet) say(fmt::format("whit: {}, the rest is in no part", there_text(result)));
+    return kDone;
+  }
+
+  static std::string there_text(const RenderResult& result) {
+    return fmt::format("{:.3g} % of the samples are there", 100 * result.share);
+  }
+
   static std::string stopped_text(const RenderResult& result) {
     return fmt::format("stopped by {} with {:.3g} % of the samples", StopSignals::name(), 100 * result.share);
   }
@@ -374,7 +386,7 @@ class RenderJob {
       summarise(outcome, settings_.stats);
       if (!passed_.empty()) name_what_was_passed();
     }
-    return settings_.denoiser && result.complete ? denoise(result) : kDone;
+    return settings_.denoiser && result.complete && !settings_.output.unwritten ? denoise(result) : kDone;
   }
 
   /// The second picture of --denoise.
@@ -444,7 +456,8 @@ class RenderJob {
       say("whit: warning: " + problem);
       return;
     }
-    viewer.create(path_, size);
+    if (settings_.shown) viewer.go_on(path_);
+    else viewer.create(path_, size);
     options.tile_done = [&viewer](const Box2i& window, std::span<const float> rgb) { viewer.update(window, rgb); };
   }
 
@@ -455,7 +468,8 @@ class RenderJob {
         {"whit:scene", path_},
         {"whit:samplesPerPixel", static_cast<int>(std::lround(result.samples_per_pixel))},
         {"whit:seed", std::to_string(settings_.seed)}};  // Text, since an OpenEXR int ends at half of the seeds.
-    if (!result.complete && StopSignals::come()) all.push_back({"whit:incomplete", stopped_text(result)});
+    if (!result.complete && settings_.parts) all.push_back({"whit:incomplete", there_text(result)});
+    else if (!result.complete && StopSignals::come()) all.push_back({"whit:incomplete", stopped_text(result)});
     return all;
   }
 

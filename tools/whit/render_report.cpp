@@ -111,6 +111,7 @@ void summarise(const RenderOutcome& outcome, bool with_statistics) {
     say(fmt::format("{} file{} of objects that are never placed {} not read (whit explain lists {}).", n,
                     n == 1 ? "" : "s", n == 1 ? "was" : "were", n == 1 ? "it" : "them"));
   if (with_statistics) more_statistics(outcome);
+  if (output.main_file.empty()) return;
   if (is_linear_format(output.main_file)) {
     say(fmt::format("linear:  {}", output.main_file));
     if (!output.display_file.empty())
