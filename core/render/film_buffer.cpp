@@ -118,32 +118,50 @@ void TileSums::add_to_own_pixels(int n, const float* film_x, const float* film_y
 
 void TileSums::halve_blocks() {
   const auto join = [this](size_t to, size_t from) { add_exactly(sums_[to], rests_[to], sums_[from], rests_[from]); };
-  constexpr size_t kBlock = 4;  // numbers of one
-  for (size_t p = 0; p < numbers(); p += kBlocks * kBlock) {
-    for (size_t c = p; c < p + kBlock; ++c) {
-      join(c, c + kBlock), join(c + 2 * kBlock, c + 3 * kBlock);
-      sums_[c + kBlock] = sums_[c + 2 * kBlock], rests_[c + kBlock] = rests_[c + 2 * kBlock];
-      for (const size_t free : {c + 2 * kBlock, c + 3 * kBlock}) sums_[free] = 0, rests_[free] = 0;
+  for (size_t p = 0; p < numbers(); p += kBlocks * kNumbers) {
+    for (size_t c = p; c < p + kNumbers; ++c) {
+      join(c, c + kNumbers), join(c + 2 * kNumbers, c + 3 * kNumbers);
+      sums_[c + kNumbers] = sums_[c + 2 * kNumbers], rests_[c + kNumbers] = rests_[c + 2 * kNumbers];
+      for (const size_t free : {c + 2 * kNumbers, c + 3 * kNumbers}) sums_[free] = 0, rests_[free] = 0;
     }
   }
 }
 
-void TileSums::save(ByteWriter& out) const {
-  out.numbers(std::span<const double>(sums_, numbers()));
-  out.numbers(std::span<const float>(rests_, numbers()));
+bool TileSums::is_empty(size_t block) const {
+  const auto is_zero = [](auto number) { return number == 0; };
+  return std::all_of(&sums_[kNumbers * block], &sums_[kNumbers * (block + 1)], is_zero) &&
+         std::all_of(&rests_[kNumbers * block], &rests_[kNumbers * (block + 1)], is_zero);
 }
 
-void TileSums::restore(ByteReader& in) {
-  in.numbers(std::span(sums_, numbers()));
-  in.numbers(std::span(rests_, numbers()));
+void TileSums::save(ByteWriter& out) const {
+  std::vector<uint8_t> there(numbers() / kNumbers);
+  std::vector<double> sums;
+  std::vector<float> rests;
+  for (size_t b = 0; b < there.size(); ++b) {
+    if (is_empty(b)) continue;
+    there[b] = 1;
+    sums.insert(sums.end(), &sums_[kNumbers * b], &sums_[kNumbers * (b + 1)]);
+    rests.insert(rests.end(), &rests_[kNumbers * b], &rests_[kNumbers * (b + 1)]);
+  }
+  out.numbers(std::span<const uint8_t>(there));
+  out.numbers(std::span<const double>(sums));
+  out.numbers(std::span<const float>(rests));
 }
 
 void TileSums::merge(ByteReader& in) {
-  std::vector<double> sums(numbers());
-  std::vector<float> rests(numbers());
+  std::vector<uint8_t> there(numbers() / kNumbers);
+  in.numbers(std::span(there));
+  const auto blocks = there.size() - static_cast<size_t>(std::count(there.begin(), there.end(), 0));
+  std::vector<double> sums(kNumbers * blocks);
+  std::vector<float> rests(sums.size());
   in.numbers(std::span(sums));
   in.numbers(std::span(rests));
-  for (size_t i = 0; i < sums.size(); ++i) add_exactly(sums_[i], rests_[i], sums[i], rests[i]);
+  size_t from = 0;
+  for (size_t b = 0; b < there.size(); ++b) {
+    if (there[b] == 0) continue;
+    for (size_t i = kNumbers * b; i < kNumbers * (b + 1); ++i, ++from)
+      add_exactly(sums_[i], rests_[i], sums[from], rests[from]);
+  }
 }
 
 void resolve_film(const FilmUnits& film, float scale, Picture& picture) {

@@ -170,14 +170,16 @@ class TileSums {
     return out;
   }
 
-  /// All of it to bytes, and back into sums of the same size.
+  /// All of it to bytes. A pixel's block without samples takes one: of the pixels of a chessboard every other one is such,
+  /// and half of the blocks of those that a pass has doubled.
   void save(ByteWriter& out) const;
-  void restore(ByteReader& in);
-  /// Adds what another tile of the same size saved, of other samples.
+  /// Adds what another tile of the same size saved, of other samples. Where there were none, all is as it was saved.
   void merge(ByteReader& in);
 
  private:
-  static constexpr int kBatch = 256;  ///< So many samples are looked at together.
+  static constexpr int kBatch = 256;     ///< So many samples are looked at together.
+  static constexpr size_t kNumbers = 4;  ///< Of a pixel's block.
+  bool is_empty(size_t block) const;
   void add_to_own_pixels(int n, const float* film_x, const float* film_y, const RGBLanes& radiance,
                          const uint8_t* usable, const uint8_t* block);
   size_t numbers() const { return 4 * reach_.pixels() * static_cast<size_t>(blocks_); }

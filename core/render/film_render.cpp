@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -66,14 +67,33 @@ TileGrid grid_over(const Box2i& pixels, bool adaptive) {
 /// `until`, in the blocks of the whole.
 struct UnitPass {
   uint32_t have = 0, want = 0, until = 0;
-  bool doubled = false;  ///< As many again: they are the last two blocks.
-  bool begun = false;    ///< The blocks are ready for them.
+  // Bytes from a file may be anything, which a bool must not.
+  uint8_t doubled = 0;  ///< As many again: they are the last two blocks.
+  uint8_t begun = 0;    ///< The blocks are ready for them.
 
+  bool operator==(const UnitPass&) const = default;
+  /// The same samples in the same blocks.
+  bool is_like(const UnitPass& p) const {
+    return have == p.have && want == p.want && until == p.until && doubled == p.doubled;
+  }
   uint8_t block(uint32_t sample) const {
     const uint64_t at = sample - have, of = want - have;
     return static_cast<uint8_t>(doubled ? 2 + 2 * at / of : TileSums::kBlocks * at / of);
   }
 };
+
+/// A unit of a pass, as whoever takes a share of it needs to know it.
+struct UnitRest {
+  uint32_t unit = 0, have = 0;
+  UnitPass pass;
+};
+
+/// Whose turn the n-th of some tiles is, of so many: one in each round, which begins elsewhere each time, so that no share
+/// is a column of the film.
+size_t turn(size_t n, size_t of) {
+  const auto step = static_cast<size_t>(std::lround(0.618 * static_cast<double>(of)));  // the golden ratio
+  return (n % of + n / of * step) % of;
+}
 
 /// Samples on their way into a chunk, and which unit and block each belongs to.
 struct Chunk {
@@ -128,7 +148,8 @@ struct FilmRender::Impl {
         if (aovs.any()) aov_tiles.emplace_back(aovs, tile, filter, grid.size);
       }
     }
-    have.assign(grid.units(), first());
+    base.assign(grid.units(), options.part ? options.part->first : 0);
+    have = base;
     pass.assign(grid.units(), {});
     task_locks = std::vector<std::mutex>(tasks());
   }
@@ -186,6 +207,8 @@ struct FilmRender::Impl {
       const uint32_t to = std::max(want[u], have[u]);
       if (options.part) pass[u] = {0, to, std::min(to, options.part->last)};
       else pass[u] = {have[u], to, to, options.blocks && have[u] > 0 && to == 2 * have[u]};
+      // Beyond the pixels that are sampled nothing is left to do, for nobody.
+      if (unit(u).area() == 0) have[u] = pass[u].until;
     }
   }
 
@@ -219,7 +242,7 @@ struct FilmRender::Impl {
     uint32_t from = UINT32_MAX, to = 0;
     each_unit(task, [&](size_t u) {
       if (have[u] == pass[u].until) return;
-      if (pass[u].doubled && !std::exchange(pass[u].begun, true)) sums[u].halve_blocks();
+      if (pass[u].doubled && !std::exchange(pass[u].begun, uint8_t{1})) sums[u].halve_blocks();
       from = std::min(from, have[u]), to = std::max(to, pass[u].until);
     });
     return {from, to};
@@ -304,14 +327,13 @@ struct FilmRender::Impl {
             options.blocks ? uint64_t{1} : 0,    aovs.columns.size()};
   }
 
-  /// Of each unit's samples, the first that is to be taken, and how many have been.
-  uint32_t first() const { return options.part ? options.part->first : 0; }
-  uint32_t taken(size_t u) const { return have[u] - first(); }
+  uint32_t taken(size_t u) const { return have[u] - base[u]; }
+  /// Nothing was taken nor is to be.
+  bool is_idle(size_t u) const { return taken(u) == 0 && pass[u] == UnitPass{}; }
 
   void save(ByteWriter& out) const {
     const std::lock_guard passing(pass_lock);
     out.value(layout());
-    out.value(first());
     out.text(note);
     {
       const std::lock_guard counting(statistics_lock);
@@ -322,8 +344,9 @@ struct FilmRender::Impl {
     for (size_t task = 0; task < tasks(); ++task) {
       const std::lock_guard lock(task_locks[task]);
       each_unit(task, [&](size_t u) {
-        out.value(have[u]);
-        out.value(pass[u]);
+        out.value(is_idle(u) ? uint8_t{0} : uint8_t{1});
+        if (is_idle(u)) return;
+        out.value(UnitState{base[u], have[u], pass[u]});
         if (taken(u) == 0) return;
         sums[u].save(out);
         if (aovs.any()) aov_tiles[u].save(out);
@@ -332,18 +355,18 @@ struct FilmRender::Impl {
   }
 
   bool restore(ByteReader& in) {
-    if (in.value<decltype(layout())>() != layout() || in.value<uint32_t>() != first()) return false;
+    if (in.value<decltype(layout())>() != layout()) return false;
     note = in.text();
-    statistics = in.value<RenderStatistics>();
-    seconds = in.value<double>();
-    worker_seconds = in.value<double>();
+    add_figures(in);
     const std::vector<size_t> things = things_of_mattes();
-    each_unit_of_all(in, [&](size_t u) {
-      have[u] = in.value<uint32_t>();
-      pass[u] = in.value<UnitPass>();
-      if (have[u] < std::max(pass[u].have, first()) || have[u] > pass[u].until) in.fail();
-      if (!in.ok() || taken(u) == 0) return;
-      sums[u].restore(in);
+    each_state(in, [&](size_t u, const UnitState& s) {
+      // Of a share the pass is known already.
+      if (s.base != base[u] || (!is_idle(u) && !s.pass.is_like(pass[u]))) in.fail();
+      if (s.have < std::max(s.pass.have, s.base) || s.have > s.pass.until) in.fail();
+      if (!in.ok()) return;
+      have[u] = s.have, pass[u] = s.pass;
+      if (taken(u) == 0) return;
+      sums[u].merge(in);
       if (aovs.any()) aov_tiles[u].restore(in, things);
     });
     return in.ok() && in.rest().empty();
@@ -351,27 +374,125 @@ struct FilmRender::Impl {
 
   bool merge(ByteReader& in, Gaps gaps) {
     if (in.value<decltype(layout())>() != layout()) return false;
-    const auto from = in.value<uint32_t>();
     in.text();
-    statistics.add(in.value<RenderStatistics>());
-    seconds += in.value<double>();
-    worker_seconds = worker_seconds + in.value<double>();
+    add_figures(in);
     const std::vector<size_t> things = things_of_mattes();
-    each_unit_of_all(in, [&](size_t u) {
-      const auto to = in.value<uint32_t>();
-      in.value<UnitPass>();
-      if ((have[u] != from && gaps == Gaps::None) || to < from) in.fail();
-      if (!in.ok() || to == from) return;
-      have[u] += to - from;  // their number, which is what a mean needs
+    each_state(in, [&](size_t u, const UnitState& s) {
+      if ((have[u] != s.base && gaps == Gaps::None) || s.have < s.base) in.fail();
+      if (!in.ok() || s.have == s.base) return;
+      have[u] += s.have - s.base;  // their number, which is what a mean needs
       sums[u].merge(in);
       if (aovs.any()) aov_tiles[u].merge(in, things);
     });
     return in.ok() && in.rest().empty();
   }
 
+  /// What is known of a unit beside its sums.
+  struct UnitState {
+    uint32_t base, have;
+    UnitPass pass;
+  };
+
+  /// Calls body(unit, what was saved of it) for those that were not idle.
   template <class Body>
-  void each_unit_of_all(const ByteReader& in, const Body& body) const {
-    for (size_t task = 0; task < tasks() && in.ok(); ++task) each_unit(task, body);
+  void each_state(ByteReader& in, const Body& body) {
+    for (size_t task = 0; task < tasks() && in.ok(); ++task) {
+      const std::lock_guard lock(task_locks[task]);
+      each_unit(task, [&](size_t u) {
+        if (in.value<uint8_t>() != 0) body(u, in.value<UnitState>());
+      });
+    }
+  }
+
+  /// Adds what rendering took.
+  void add_figures(ByteReader& in) {
+    {
+      const std::lock_guard counting(statistics_lock);
+      statistics.add(in.value<RenderStatistics>());
+    }
+    seconds += in.value<double>();
+    worker_seconds = worker_seconds + in.value<double>();
+  }
+
+  // ---- Passes that others take shares of ----
+
+  PassRest rest() const {
+    PassRest rest;
+    for (size_t task = 0; task < tasks(); ++task) {
+      const double before = rest.samples;
+      each_unit(task, [&](size_t u) { rest.samples += samples_left(u, have[u], pass[u]); });
+      rest.tiles += rest.samples > before;
+    }
+    return rest;
+  }
+
+  double samples_left(size_t u, uint32_t had, const UnitPass& p) const {
+    return static_cast<double>(p.until - had) * static_cast<double>(unit(u).area());
+  }
+
+  void save_pass(ByteWriter& out) const {
+    std::vector<UnitRest> units;
+    for (size_t u = 0; u < pass.size(); ++u) {
+      if (have[u] != pass[u].until) units.push_back({static_cast<uint32_t>(u), have[u], pass[u]});
+    }
+    out.value(layout());
+    out.list(std::span<const UnitRest>(units));
+  }
+
+  bool take_share(ByteReader& in, size_t share, size_t of) {
+    if (in.value<decltype(layout())>() != layout()) return false;
+    const std::vector<UnitRest> units = in.list<UnitRest>();
+    if (!in.ok() || !in.rest().empty()) return false;
+    std::vector<double> work(tasks());
+    for (const UnitRest& r : units) {
+      const UnitPass& p = r.pass;
+      if (r.unit >= grid.units() || r.have < p.have || r.have >= p.until || p.until != p.want) return false;
+      work[task_of(r.unit)] += samples_left(r.unit, r.have, p);
+    }
+    const std::vector<bool> mine = tasks_of_share(work, share, of);
+    for (const UnitRest& r : units) {
+      if (!mine[task_of(r.unit)]) continue;
+      base[r.unit] = have[r.unit] = r.have;
+      pass[r.unit] = r.pass;
+      pass[r.unit].begun = 1;  // There are no blocks here that would have to make room.
+    }
+    return true;
+  }
+
+  size_t task_of(size_t unit) const {
+    const auto per_task = static_cast<size_t>(kTask / grid.size), columns = static_cast<size_t>(grid.columns);
+    const size_t tile = unit / static_cast<size_t>(grid.colours);
+    return tile / columns / per_task * (columns / per_task) + tile % columns / per_task;
+  }
+
+  /// Which tasks are a share, by the samples that each lacks.
+  static std::vector<bool> tasks_of_share(const std::vector<double>& work, size_t share, size_t of) {
+    std::vector<size_t> order;
+    for (size_t task = 0; task < work.size(); ++task) {
+      if (work[task] > 0) order.push_back(task);
+    }
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return work[a] > work[b]; });
+    std::vector<bool> mine(work.size());
+    for (size_t n = 0; n < order.size(); ++n) mine[order[n]] = turn(n, of) == share;
+    return mine;
+  }
+
+  bool add_share(ByteReader& in) {
+    // All of it or nothing is in a state that is saved meanwhile.
+    const std::lock_guard passing(pass_lock);
+    if (in.value<decltype(layout())>() != layout()) return false;
+    in.text();
+    add_figures(in);
+    const std::vector<size_t> things = things_of_mattes();
+    each_state(in, [&](size_t u, const UnitState& s) {
+      if (s.base != have[u] || s.have != pass[u].until || s.have == s.base || !s.pass.is_like(pass[u])) in.fail();
+      if (!in.ok()) return;
+      if (pass[u].doubled && !std::exchange(pass[u].begun, uint8_t{1})) sums[u].halve_blocks();
+      have[u] = s.have;
+      sums[u].merge(in);
+      if (aovs.any()) aov_tiles[u].merge(in, things);
+    });
+    return in.ok() && in.rest().empty();
   }
 
   /// How many numbers there are in each of the columns that cryptomattes are made of.
@@ -432,7 +553,7 @@ struct FilmRender::Impl {
     double samples = 0, all = 0;
     for (size_t u = 0; u < have.size(); ++u) {
       const auto area = static_cast<double>(unit(u).area());
-      samples += area * taken(u), all += area * (std::max(have[u], pass[u].until) - first());
+      samples += area * taken(u), all += area * (std::max(have[u], pass[u].until) - base[u]);
     }
     return all > 0 ? samples / all : 1.0;
   }
@@ -453,7 +574,9 @@ struct FilmRender::Impl {
   ZeroPages<float> rests;          ///< Likewise.
   std::vector<TileSums> sums;      ///< By unit.
   std::vector<AovTile> aov_tiles;  ///< As many, or none.
-  std::vector<uint32_t> have;      ///< Samples per pixel of each unit.
+  std::vector<uint32_t> base;      ///< Of each unit's samples the first that is to be taken,
+  std::vector<uint32_t>
+      have;  ///< and where it has come to: so many per pixel there are, where that is the first of all.
   std::vector<UnitPass> pass;
   std::string note;
   bool restored = false;
@@ -484,8 +607,12 @@ int64_t FilmRender::Unit::area() const {
 bool FilmRender::extend(uint32_t samples) { return extend(impl_->everywhere(samples)); }
 
 bool FilmRender::extend(std::span<const uint32_t> samples, std::string note) {
-  impl_->begin_pass(samples, std::move(note));
+  begin_pass(samples, std::move(note));
   return go_on();
+}
+
+void FilmRender::begin_pass(std::span<const uint32_t> samples, std::string note) {
+  impl_->begin_pass(samples, std::move(note));
 }
 
 bool FilmRender::go_on() {
@@ -593,6 +720,10 @@ FilmPart FilmRender::part() const {
 
 void FilmRender::save(ByteWriter& out) const { impl_->save(out); }
 bool FilmRender::restore(ByteReader& in) { return impl_->restored = impl_->restore(in); }
+FilmRender::PassRest FilmRender::rest() const { return impl_->rest(); }
+void FilmRender::save_pass(ByteWriter& out) const { impl_->save_pass(out); }
+bool FilmRender::take_share(ByteReader& in, size_t share, size_t of) { return impl_->take_share(in, share, of); }
+bool FilmRender::add_share(ByteReader& in) { return impl_->add_share(in); }
 bool FilmRender::merge(ByteReader& in, Gaps gaps) { return impl_->merge(in, gaps); }
 
 std::vector<FilmRender::Unit> FilmRender::units() const {

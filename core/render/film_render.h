@@ -38,6 +38,8 @@ class FilmRender {
   /// The same, with a number for each unit; those that have as many stay as they are. `note` is kept with what save()
   /// says of this pass, for whoever decides about the next.
   bool extend(std::span<const uint32_t> samples, std::string note = {});
+  /// Begins a pass as extend() does, whose samples go_on() takes, or others do (save_pass()).
+  void begin_pass(std::span<const uint32_t> samples, std::string note = {});
   /// Extends several films of one size, tile by tile in turn, so that the machine's moods meet all alike. They must have
   /// the same pixels and kind of units.
   static bool extend_in_turn(std::span<FilmRender* const> films, uint32_t samples);
@@ -57,6 +59,24 @@ class FilmRender {
   /// Ends the pass that was under way in a state that was restored; what comes of it has the bits that it would have had
   /// there. As extend().
   bool go_on();
+
+  /// What is left of a pass.
+  struct PassRest {
+    size_t tiles = 0;    ///< Of 16 x 16 pixels, which lack samples.
+    double samples = 0;  ///< Over all pixels.
+  };
+  PassRest rest() const;
+  /// What is left of the pass that has begun, to bytes; of sums there are none among them.
+  void save_pass(ByteWriter& out) const;
+  /// Makes a film on which nothing was rendered one share of such a pass of another: one of the same scene and options.
+  /// go_on() takes those samples, and those alone. Shares are the tiles by turns, those with the most samples first, so
+  /// that all take alike: the `share`-th of `of`, from 0. False, and the film is of no use, when it is no such pass.
+  bool take_share(ByteReader& in, size_t share, size_t of);
+  /// Adds what a film saved that took a share of this one's pass and all of its samples. The picture has the bits that
+  /// go_on() would have given it, however many shares there are and in whatever order they come. False, and the film is
+  /// of no use, when samples are not those that are left.
+  bool add_share(ByteReader& in);
+
   FilmPart part() const;
   /// Whether it was restored; and the note of the last pass.
   bool restored() const;

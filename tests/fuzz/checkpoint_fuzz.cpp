@@ -3,6 +3,7 @@
 // what the state says is not trusted to be of a film that there was.
 #include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "core/image/checksum.h"
 #include "core/render/film_render.h"
@@ -74,6 +75,12 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   whit::ByteReader in(kept.state);
   whit::FilmRender joined(*world().built.scene, options());
   if (joined.merge(in)) require(joined.result().picture.rgb.size() == 3 * 8 * 8);
+  // As what came of a share, and as a pass.
+  whit::ByteReader part(kept.state), pass(kept.state);
+  whit::FilmRender shared(*world().built.scene, options()), share(*world().built.scene, options());
+  shared.begin_pass(std::vector<uint32_t>(shared.units().size(), 4));
+  if (shared.add_share(part)) require(shared.result().picture.rgb.size() == 3 * 8 * 8);
+  if (share.take_share(pass, 0, 1)) require(share.rest().tiles > 0 || share.rest().samples == 0);
   return 0;
 }
 

@@ -1,7 +1,10 @@
 // The state of a film: what goes on from it has the bits of a film that was never stopped.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "core/render/film_render.h"
 #include "tests/render/film_world.h"
@@ -72,6 +75,98 @@ TEST_P(FilmState, GoesOnWhereverItWasStopped) {
     EXPECT_EQ(second.result().statistics.camera_samples, whole.result().statistics.camera_samples) << stop;
     if (all) break;
   }
+}
+
+/// Numbers of samples for four passes: as many again for all; then for some, and others have a number that is no double; at
+/// last for one, and for those that are beyond the picture.
+std::vector<std::vector<uint32_t>> wants_of(const std::vector<FilmRender::Unit>& units) {
+  std::vector<uint32_t> third(units.size()), last(units.size());
+  for (size_t u = 0; u < units.size(); ++u) {
+    third[u] = u % 3 == 0 ? 16 : u % 3 == 1 ? 11 : 0;
+    last[u] = u == 0 || units[u].area() == 0 ? 32 : 0;
+  }
+  return {std::vector<uint32_t>(units.size(), 4), std::vector<uint32_t>(units.size(), 8), third, last};
+}
+
+std::vector<uint32_t> samples_of(const FilmRender& film) {
+  std::vector<uint32_t> samples;
+  for (const FilmRender::Unit& u : film.units()) samples.push_back(u.samples);
+  return samples;
+}
+
+std::string pass_of(const FilmRender& film) {
+  std::string pass;
+  ByteWriter out([&](const void* bytes, size_t size) { pass.append(static_cast<const char*>(bytes), size); });
+  film.save_pass(out);
+  return pass;
+}
+
+bool take_share(FilmRender& film, const std::string& pass, size_t share, size_t of) {
+  ByteReader in(pass);
+  return film.take_share(in, share, of);
+}
+
+bool add_share(FilmRender& film, const std::string& state) {
+  ByteReader in(state);
+  return film.add_share(in);
+}
+
+/// What comes of a share.
+std::string share_of(const World& of, const RenderOptions& options, const std::string& pass, size_t share, size_t n) {
+  FilmRender film(of.scene(), options);
+  EXPECT_TRUE(take_share(film, pass, share, n) && film.go_on());
+  return state_of(film);
+}
+
+TEST_P(FilmState, SharesOfAPassAreThePass) {
+  const World of = film_world(std::get<3>(GetParam()), "sobol");
+  for (const size_t n : {size_t{1}, size_t{2}, size_t{3}, size_t{15}}) {  // 15 are more than there are tiles
+    FilmRender whole(of.scene(), options()), shared(of.scene(), options());
+    for (const std::vector<uint32_t>& want : wants_of(whole.units())) {
+      ASSERT_TRUE(whole.extend(want));
+      shared.begin_pass(want);
+      const std::string pass = pass_of(shared);
+      for (size_t k = n; k-- > 0;)
+        ASSERT_TRUE(add_share(shared, share_of(of, options(), pass, k, n))) << k << " of " << n;
+      EXPECT_EQ(shared.rest().tiles, 0u);
+      EXPECT_EQ(values_of(shared), values_of(whole)) << n;
+      EXPECT_EQ(samples_of(shared), samples_of(whole)) << n;
+      for (const int colour : {-1, 0, 1}) {
+        if (!options().blocks) continue;
+        EXPECT_EQ(shared.variance(colour), whole.variance(colour)) << n << " " << colour;
+      }
+      EXPECT_EQ(shared.result().statistics.camera_samples, whole.result().statistics.camera_samples);
+    }
+  }
+}
+
+/// The one who decides may have been stopped, and those who render too.
+TEST_P(FilmState, SharesOfTheRestOfAPassAreThePass) {
+  const World of = film_world(std::get<3>(GetParam()), "sobol");
+  FilmRender whole(of.scene(), options());
+  ASSERT_TRUE(whole.extend(64) && whole.extend(128));
+  int asked = 0;
+  RenderOptions stopping = options();
+  stopping.threads = 1;
+  stopping.progress = [&](double) { return ++asked < 9; };
+  FilmRender first(of.scene(), stopping), second(of.scene(), options());
+  if (first.extend(64)) first.extend(128);
+  ASSERT_TRUE(restore(second, state_of(first)));
+  const auto hand_out = [&] {
+    const std::string pass = pass_of(second);
+    for (size_t k = 0; k < 3; ++k) {
+      asked = 0;
+      FilmRender begun(of.scene(), stopping), on(of.scene(), options());
+      ASSERT_TRUE(take_share(begun, pass, k, 3) && take_share(on, pass, k, 3));
+      begun.go_on();
+      ASSERT_TRUE(restore(on, state_of(begun)) && on.go_on());
+      ASSERT_TRUE(add_share(second, state_of(on)));
+    }
+  };
+  hand_out();
+  second.begin_pass(std::vector<uint32_t>(second.units().size(), 128));
+  hand_out();
+  EXPECT_EQ(values_of(second), values_of(whole));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, FilmState,
@@ -174,6 +269,72 @@ TEST(FilmStates, APartIsAPictureOfItsSamples) {
   ASSERT_TRUE(restore(on, state_of(film)));
   ASSERT_TRUE(on.go_on() && on.extend(100));
   EXPECT_EQ(on.picture().rgb, picture.rgb);
+}
+
+TEST(FilmStates, SharesThatAreNoneOfThePassAreRefused) {
+  const World of = film_world("", "sobol"), filtered = film_world(kGaussian, "sobol");
+  const RenderOptions options = options_for(true, true, false);
+  const auto begun = [&](const World& world, uint32_t samples, bool all) {
+    auto film = std::make_unique<FilmRender>(world.scene(), options);
+    film->begin_pass(std::vector<uint32_t>(film->units().size(), 4));
+    if (!all) return film;
+    EXPECT_TRUE(film->go_on());
+    film->begin_pass(std::vector<uint32_t>(film->units().size(), samples));
+    return film;
+  };
+  const std::string first = pass_of(*begun(of, 0, false)), second = pass_of(*begun(of, 8, true)),
+                    other = pass_of(*begun(of, 7, true));
+  const std::string good = share_of(of, options, second, 0, 2);
+  const auto film = begun(of, 8, true);
+  ASSERT_TRUE(add_share(*film, good));
+  EXPECT_FALSE(add_share(*film, good));                                              // twice
+  EXPECT_FALSE(add_share(*begun(of, 8, true), share_of(of, options, first, 0, 2)));  // of the pass before
+  EXPECT_FALSE(add_share(*begun(of, 8, true), share_of(of, options, other, 0, 2)));  // fewer samples
+  EXPECT_FALSE(add_share(*begun(filtered, 8, true), good));                          // another film
+  FilmRender unfinished(of.scene(), options), another(filtered.scene(), options), bytes(of.scene(), options);
+  ASSERT_TRUE(take_share(unfinished, second, 0, 2));
+  EXPECT_FALSE(add_share(*begun(of, 8, true), state_of(unfinished)));
+  EXPECT_FALSE(take_share(another, second, 0, 2));
+  EXPECT_FALSE(take_share(bytes, second.substr(0, second.size() - 1), 0, 2));
+  EXPECT_FALSE(take_share(bytes, second + "x", 0, 2));
+  for (const size_t size : {size_t{0}, size_t{7}, good.size() / 2, good.size() - 1})
+    EXPECT_FALSE(add_share(*begun(of, 8, true), good.substr(0, size))) << size;
+}
+
+TEST(FilmStates, SharesTakeAlike) {
+  // Tiles are sorted by their samples and dealt in rounds. Between any two shares each round makes a difference of what its
+  // largest has more than its smallest, all rounds together no more than the largest tile of all.
+  const World of = film_world("", "sobol");
+  const RenderOptions options = options_for(true, true, false);
+  FilmRender film(of.scene(), options);
+  std::vector<uint32_t> want(film.units().size());
+  for (size_t u = 0; u < want.size(); ++u) want[u] = static_cast<uint32_t>(u * u % 97);
+  film.begin_pass(want);
+  const double largest = 16 * 16 * 96;
+  for (const size_t n : {size_t{1}, size_t{2}, size_t{3}, size_t{5}}) {
+    double least = 1e30, most = 0, all = 0;
+    for (size_t k = 0; k < n; ++k) {
+      FilmRender share(of.scene(), options);
+      ASSERT_TRUE(take_share(share, pass_of(film), k, n));
+      const double samples = share.rest().samples;
+      least = std::min(least, samples), most = std::max(most, samples), all += samples;
+    }
+    EXPECT_LE(most - least, largest) << n;
+    EXPECT_EQ(all, film.rest().samples) << n;
+  }
+}
+
+TEST(FilmStates, WhatIsThereIsThePictureOfItsSamples) {
+  // With gaps: samples 0 to 6 and 64 of 100, whatever is between.
+  const World of = film_world("", "random");
+  FilmRender gaps(of.scene(), {}), none(of.scene(), {});
+  const std::string first = part_of(of, {}, 0, 7), second = part_of(of, {}, 64, 65);
+  for (const std::string& part : {first, second}) {
+    ByteReader in(part);
+    ASSERT_TRUE(gaps.merge(in, FilmRender::Gaps::Allowed));
+  }
+  EXPECT_EQ(gaps.result().samples_per_pixel, 8);
+  EXPECT_TRUE(merge(none, first) && !merge(none, second));
 }
 
 TEST(FilmStates, OthersAreRefused) {
