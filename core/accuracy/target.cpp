@@ -48,6 +48,7 @@ class TargetRender {
     if (!usable_) return std::move(out_);
     out_.end = units_.empty() ? TargetEnd::Samples : first_pass();
     if (out_.end == TargetEnd::Met) out_.end = request_.error > 0 ? approach() : use_time();
+    if (out_.end == TargetEnd::Failed) return std::move(out_);
     if (keeper_) keeper_->end(film_, out_.end == TargetEnd::Met || out_.end == TargetEnd::Samples);
     finish();
     return std::move(out_);
@@ -72,8 +73,9 @@ class TargetRender {
     return options;
   }
 
-  bool tell() {
-    if (!request_.progress) return true;
+  bool tell() { return !request_.progress || request_.progress(state()); }
+
+  TargetState state() const {
     TargetState state{claim_, 0, samples() / pixels_};
     const double pass = pass_share_ * pass_samples_;
     if (request_.deadline) {
@@ -82,7 +84,7 @@ class TargetRender {
     }
     if (request_.error > 0) state.share = std::max(state.share, (samples() + pass) / std::max(plan_.expected, 1.0));
     state.share = std::min(state.share, 1.0);
-    return request_.progress(state);
+    return state;
   }
 
   double samples() const {
@@ -125,7 +127,8 @@ class TargetRender {
   bool pass(const std::vector<uint32_t>& want) {
     pass_samples_ = added(want), pass_share_ = 0;
     const auto start = Clock::now();
-    const bool complete = std::exchange(goes_on_, false) ? film_.go_on() : film_.extend(want, known());
+    if (!std::exchange(goes_on_, false)) film_.begin_pass(want, known());
+    const bool complete = request_.render_pass ? pass_of_others() : film_.go_on();
     units_ = film_.units();
     // The dearest of the last passes: the next is not to be late.
     const double rate = std::chrono::duration<double>(Clock::now() - start).count() / std::max(pass_samples_, 1.0);
@@ -134,10 +137,22 @@ class TargetRender {
     return complete;
   }
 
+  bool pass_of_others() {
+    const PassEnd end = request_.render_pass(film_, state(), [this](double share) {
+      pass_share_ = share;
+      return tell();
+    });
+    failed_ = end == PassEnd::Failed;
+    return end == PassEnd::Over;
+  }
+
   bool pass(uint32_t samples) { return pass(std::vector<uint32_t>(units_.size(), samples)); }
 
   /// Why a pass was stopped.
-  TargetEnd stopped() const { return Clock::now() >= deadline_ ? TargetEnd::Time : TargetEnd::Stopped; }
+  TargetEnd stopped() const {
+    if (failed_) return TargetEnd::Failed;
+    return Clock::now() >= deadline_ ? TargetEnd::Time : TargetEnd::Stopped;
+  }
 
   /// Met: done. Where there is a deadline the samples come in small passes, so that there is a picture early.
   TargetEnd first_pass() {
@@ -356,21 +371,48 @@ class TargetRender {
     double doubted_at = 0;  ///< Samples over all pixels when doubts were found last.
   };
   Plan plan_;
+  bool failed_ = false;   ///< What others took cannot be added.
   bool usable_ = true;    ///< What was kept is of such a film.
   bool goes_on_ = false;  ///< The next pass is the rest of one that was under way in a film that was kept.
   TargetOutcome out_;
 };
 
+/// Of samplers that cannot go on sets of a few samples each will do.
+Diagnostics let_extend(BuiltWorld& world, uint32_t seed) {
+  return world.scene->sampler().extends() ? Diagnostics() : set_samples(world, kSet, seed);
+}
+
 }  // namespace
 
 TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed) {
-  Diagnostics said;
-  if (!world.scene->sampler().extends()) said = set_samples(world, kSet, seed);
+  Diagnostics said = let_extend(world, seed);
   const Stopwatch watch;
   TargetOutcome out = TargetRender(world, options, request).run();
   out.rendered.elapsed = watch.elapsed();
   out.rendered.said = std::move(said);
   out.rendered.said.append(world.textures->errors());
+  return out;
+}
+
+std::optional<RenderedWorld> render_share(BuiltWorld& world, RenderOptions options, std::string_view pass,
+                                          PassShare share, uint32_t seed) {
+  RenderedWorld out;
+  out.said = let_extend(world, seed);
+  const Stopwatch watch;
+  options.blocks = options.adaptive = true;
+  options.progress = [&world, report = std::move(options.progress)](double done) {
+    return (!report || report(done)) && (world.keep_going || !world.textures->failed());
+  };
+  FilmRender film(*world.scene, options);
+  ByteReader in(pass);
+  if (!film.take_share(in, share.number - 1, share.of)) return {};
+  const bool usable = !options.keeper || options.keeper->begin(film);
+  const bool complete = usable && film.go_on();
+  if (options.keeper && usable) options.keeper->end(film, complete);
+  out.result = film.result();
+  out.result.complete = complete;
+  out.elapsed = watch.elapsed();
+  out.said.append(world.textures->errors());
   return out;
 }
 

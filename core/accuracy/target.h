@@ -12,8 +12,10 @@
 #include <chrono>
 #include <functional>
 #include <optional>
+#include <string_view>
 
 #include "core/accuracy/film_error.h"
+#include "core/session/pass_file.h"
 #include "core/session/session.h"
 
 namespace whit {
@@ -25,6 +27,10 @@ struct TargetState {
   double samples_mean = 0;  ///< Per pixel.
 };
 
+/// How a pass ended that somebody else rendered: all samples are there; or some, and no more will come; or the film is of
+/// no use any more.
+enum class PassEnd { Over, Stopped, Failed };
+
 struct TargetRequest {
   double error = 0;                                               ///< nRMSE to reach; 0: as far as the time reaches.
   double confidence = 0.95;                                       ///< That the error is below, in (0,1).
@@ -35,9 +41,14 @@ struct TargetRequest {
   /// With a deadline: called when every pixel has samples for the first time; the seconds it takes to write the picture,
   /// which the deadline then comes earlier by.
   std::function<double(const RenderResult&)> first_picture{};
+  /// Without a deadline: has the samples of a pass that has begun taken by others (FilmRender::save_pass(), add_share()),
+  /// and tells `progress` of its share that is there; where that returns false nothing more is waited for. The picture is
+  /// that of one machine, bit by bit, since sums alone decide. Null: this machine takes them.
+  std::function<PassEnd(FilmRender& film, const TargetState& state, const std::function<bool(double)>& progress)>
+      render_pass{};
 };
 
-enum class TargetEnd { Met, Time, Samples, Stopped };
+enum class TargetEnd { Met, Time, Samples, Stopped, Failed };
 
 struct TargetOutcome {
   RenderedWorld rendered;
@@ -50,5 +61,11 @@ struct TargetOutcome {
 /// Renders until the target is met or there is no more time. Sets the world's samples (set_samples()) where its sampler
 /// cannot go on beyond its number.
 TargetOutcome render_to_target(BuiltWorld& world, RenderOptions options, const TargetRequest& request, uint32_t seed);
+
+/// Takes one share of a pass (FilmRender::save_pass()) that a render of the same scene and options to a target error has
+/// begun. The film is given to the options' keeper, and of no use for anything but FilmRender::add_share(). Nothing, where
+/// it is no pass of such a film.
+std::optional<RenderedWorld> render_share(BuiltWorld& world, RenderOptions options, std::string_view pass,
+                                          PassShare share, uint32_t seed);
 
 }  // namespace whit

@@ -8,6 +8,7 @@ const char* target_end_text(const TargetOutcome& o, bool has_target) {
     case TargetEnd::Time: return has_target ? "time limit, target not met" : "time limit";
     case TargetEnd::Samples: return has_target ? "not met with --max-samples" : "--max-samples";
     case TargetEnd::Stopped: return "stopped";
+    case TargetEnd::Failed: return "failed";
   }
   return "";
 }

@@ -60,8 +60,7 @@ bool is_possible(const FilmPart& part) {
 void CheckpointHead::save(ByteWriter& out) const {
   out.numbers(std::span(kMagic));
   out.value(complete);
-  out.value(static_cast<uint32_t>(identity.parts.size()));
-  for (const RenderIdentity::Part& p : identity.parts) out.text(p.what), out.text(p.value);
+  identity.save(out);
   out.text(command.folder);
   out.text(command.scene);
   out.value(static_cast<uint32_t>(command.words.size()));
@@ -74,10 +73,7 @@ void CheckpointHead::restore(ByteReader& in) {
   in.numbers(std::span(magic));
   if (magic != kMagic) in.fail();
   complete = in.value<uint8_t>() != 0;
-  for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) {
-    std::string what = in.text();
-    identity.add(std::move(what), in.text());
-  }
+  identity.restore(in);
   command.folder = in.text();
   command.scene = in.text();
   for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) command.words.push_back(in.text());

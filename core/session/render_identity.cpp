@@ -11,6 +11,18 @@
 
 namespace whit {
 
+void RenderIdentity::save(ByteWriter& out) const {
+  out.value(static_cast<uint32_t>(parts.size()));
+  for (const Part& p : parts) out.text(p.what), out.text(p.value);
+}
+
+void RenderIdentity::restore(ByteReader& in) {
+  for (auto n = in.value<uint32_t>(); n > 0 && in.ok(); --n) {
+    std::string what = in.text();
+    add(std::move(what), in.text());
+  }
+}
+
 RenderIdentity identity_of(const std::string& scene, const ParsedFile& file) {
   RenderIdentity identity;
   const auto sum_of = [](const std::string& path) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/session/session.h"
 
 namespace whit {
@@ -17,6 +18,9 @@ struct RenderIdentity {
   std::vector<Part> parts;
 
   void add(std::string what, std::string value) { parts.push_back({std::move(what), std::move(value)}); }
+
+  void save(ByteWriter& out) const;
+  void restore(ByteReader& in);
 };
 
 /// The program's own bytes, those of the scene's text and of every file that it reads.

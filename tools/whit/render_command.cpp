@@ -42,6 +42,7 @@ SandboxRequest sandbox_request(const RenderSettings& s) {
                    s.checkpoint.kept_in(),
                    s.log_dir.empty() ? "" : s.log_dir + "/whit.log"};
   request.read.push_back(s.checkpoint.resume);
+  request.read.push_back(s.passes.pass);
   return request;
 }
 

@@ -10,6 +10,7 @@
 
 #include "core/render/aovs.h"
 #include "core/session/checkpoint.h"
+#include "core/session/pass_file.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/terminal.h"
@@ -60,8 +61,9 @@ std::string take_stats_file(Arguments& args, std::string& file) {
 /// Flags that a picture does not depend on: where it goes, what is said of it, how many threads make it, whether it was
 /// stopped in between.
 const std::vector<std::string> kBesideWithValue{
-    "--outfile",     "-o",  "--display",    "--nthreads", "--json",   "--display-server", "--logdir",
-    "--minloglevel", "--v", "--checkpoint", "--every",    "--resume", "--allow",          "--max-memory"};
+    "--outfile",     "-o",     "--display",    "--nthreads", "--json",   "--display-server", "--logdir",
+    "--minloglevel", "--v",    "--checkpoint", "--every",    "--resume", "--allow",          "--max-memory",
+    "--hand-out",    "--pass", "--share"};
 const std::vector<std::string> kBeside{"--quiet", "--stats", "--verbose", "--sandbox"};
 /// Of the others, those that samples do not depend on: how they become a picture, how many are added, and how long that
 /// may take.
@@ -160,6 +162,13 @@ std::vector<Flag> flags_of(RenderSettings& s) {
        "Go on from a checkpoint, and keep it up to date: the picture is that of a render without a stop",
        {.files = ""}},
       {"--samples", &s.checkpoint.samples, "With --resume: that many samples per pixel more, +192"},
+      {"--hand-out",
+       &s.passes.hand_out,
+       "Let others render the passes of --target-error: each is a file in this folder and a line of JSON on standard "
+       "output, and the parts come as names on standard input (docs/farm.md)",
+       {.files = "/"}},
+      {"--pass", &s.passes.pass, "Render a share of a pass that --hand-out wrote, into a --checkpoint", {.files = ""}},
+      {"--share", &s.passes.share, "Which share of how many --pass is to render: 2/5"},
       {"--json",
        &s.target.json,
        "What --target-error or --time-limit came to, as JSON: a file, or - for stdout",
@@ -231,6 +240,32 @@ std::string usage_problem(const RenderSettings& s, const CheckpointFlags& c) {
   return {};
 }
 
+/// The same of the flags that divide passes.
+std::string usage_problem(const RenderSettings& s, const PassFlags& p) {
+  if (!p.any()) return {};
+  const char* const flag = p.hand_out.empty() ? "--pass" : "--hand-out";
+  if (!p.hand_out.empty() && !(p.pass.empty() && p.share.empty()))
+    return "--hand-out decides and --pass renders: each is a command of its own";
+  if (p.hand_out.empty() && (p.pass.empty() || p.share.empty()))
+    return "--pass FILE and --share 2/5 belong together: which pass, and what of it";
+  if (s.target.error.empty() || !s.target.time_limit.empty())
+    return fmt::format("{} is of a render to a --target-error, without a --time-limit: sums decide and no clock", flag);
+  if (s.scenes.size() != 1 || s.scenes.front() == "-") return fmt::format("{} needs one scene, by its name", flag);
+  if (!s.debug_pixel.empty() || s.cat || s.toply) return fmt::format("{} is of pictures, and none is made", flag);
+  if (!p.hand_out.empty()) {
+    if (s.stats_file == "-" || s.target.json == "-")
+      return "--hand-out tells of passes on standard output; name files for --stats and --json";
+    if (s.sandbox.on) return "--hand-out is told the names of parts later, which --sandbox cannot know";
+    return {};
+  }
+  if (!share_of_text(p.share))
+    return fmt::format("--share: \"{}\" is no share; write 2/5 for the second of five", p.share);
+  if (!s.checkpoint.any()) return "--pass makes no picture: --checkpoint names the file for what was rendered";
+  if (!s.output.outfile.empty() || !s.target.json.empty() || !s.display_server.empty())
+    return "--pass makes no picture: --outfile, --json and --display-server belong to --hand-out";
+  return {};
+}
+
 /// The same of the flags that render a part of a picture.
 std::string part_problem(const RenderSettings& s) {
   if (!s.crop.empty() && !(s.crop[0] < s.crop[1] && s.crop[2] < s.crop[3] && s.crop[0] >= 0 && s.crop[1] <= 1 &&
@@ -259,8 +294,8 @@ std::string usage_problem(const RenderSettings& s) {
   if (!s.output.outfile.empty() && s.scenes.size() > 1) {
     return "--outfile with several scenes would write them over each other";
   }
-  if (s.output.unwritten && !s.checkpoint.any() && s.display_server.empty() && s.stats_file.empty() &&
-      s.target.json.empty())
+  if (s.output.unwritten && s.passes.pass.empty() && !s.checkpoint.any() && s.display_server.empty() &&
+      s.stats_file.empty() && s.target.json.empty())
     return "--outfile none: nothing would come of it; name a --checkpoint, a --display-server or --stats FILE.json";
   if (!s.max_memory.empty() && size_of(s.max_memory) == 0)
     return fmt::format("--max-memory: \"{}\" is no size above 0; write 512M, 1G or bytes", s.max_memory);
@@ -275,6 +310,7 @@ std::string usage_problem(const RenderSettings& s) {
     return "--time-limit: how long --denoise takes at the end is not known before; leave one of them out";
   if (std::string problem = usage_problem(s, s.target); !problem.empty()) return problem;
   if (std::string problem = usage_problem(s, s.checkpoint); !problem.empty()) return problem;
+  if (std::string problem = usage_problem(s, s.passes); !problem.empty()) return problem;
   for (const std::string& scene : s.scenes) {
     if (std::string problem = usage_problem(s.model, scene); !problem.empty()) return problem;
   }
@@ -353,6 +389,7 @@ bool read_render_flags(const Arguments& args, RenderSettings& settings, int& cod
   settings.picture_words = picture_words(words);
   settings.picture_command = fmt::format("whit {}", fmt::join(settings.picture_words, " "));
   settings.of_samples = flags_of_samples(command.flags);
+  if (!settings.passes.pass.empty()) settings.output.unwritten = true;
   if (settings.output.outfile == "none") settings.output.outfile.clear(), settings.output.unwritten = true;
   if (problem.empty()) problem = usage_problem(settings);
   code = kUsage;

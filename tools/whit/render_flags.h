@@ -34,6 +34,13 @@ struct CheckpointFlags {
   uint32_t more_samples() const;
 };
 
+/// Passes of a render to an accuracy, which others take shares of.
+struct PassFlags {
+  std::string hand_out;     ///< The folder of the one who decides; "" for none.
+  std::string pass, share;  ///< Of one who renders, as given: share_of_text(); "" for none.
+  bool any() const { return !hand_out.empty() || !pass.empty() || !share.empty(); }
+};
+
 struct PartsPlan;
 
 struct RenderSettings {
@@ -50,6 +57,7 @@ struct RenderSettings {
   ModelFlags model;
   TargetFlags target;
   CheckpointFlags checkpoint;
+  PassFlags passes;
   SandboxFlags sandbox;
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;

@@ -25,6 +25,7 @@
 #include "core/session/files.h"
 #include "core/session/memory.h"
 #include "core/session/parts.h"
+#include "core/session/pass_file.h"
 #include "tools/whit/display_server.h"
 #include "tools/whit/load.h"
 #include "tools/whit/quantities.h"
@@ -245,15 +246,44 @@ class RenderJob {
     DisplayServer viewer;
     const Stopwatch connecting;
     RenderOptions options = render_options(built, output.rendered_aovs(), viewer);
+    if (int code = open_pass(); code != kDone) return code;
     if (int code = keep_state(*built.scene, options); code != kDone) return code;
     times_.output += connecting.elapsed();
     times_.ready = times_.program + times_.flags + world_started_.elapsed();
+    if (pass_) return trace_share(built, std::move(options), output, viewer);
     if (settings_.target.any()) return approach_and_write(built, options, output, viewer);
     if (int code = check_part(*built.scene, options); code != kDone) return code;
     const RenderedWorld rendered = settings_.parts ? join(built, options) : trace(built, options);
     if (int code = write_and_say(built, rendered, output, viewer); code != kDone) return code;
     if (rendered.result.complete) return kDone;
     return settings_.parts ? say_missing(rendered.result) : say_stopped(rendered.result);
+  }
+
+  /// Where the flags ask for a share of a pass: it must be one of this render's.
+  int open_pass() {
+    const std::string& path = settings_.passes.pass;
+    if (path.empty()) return kDone;
+    pass_ = std::make_unique<PassFile>(path);
+    const std::string other = pass_->problem.empty() ? difference(pass_->identity, identity_of_whole()) : "";
+    if (!other.empty())
+      say(fmt::format("whit: cannot take a share of \"{}\", which is of another render: {}", path, other));
+    if (!pass_->problem.empty()) say(fmt::format("whit: cannot take a share of \"{}\": {}", path, pass_->problem));
+    return !pass_->problem.empty() ? kFileError : other.empty() ? kDone : kUsage;
+  }
+
+  int trace_share(BuiltWorld& built, RenderOptions options, const OutputPlan& output, DisplayServer& viewer) {
+    std::optional<Progress> progress;
+    if (!settings_.quiet) progress.emplace("rendering");
+    options.progress = shown_by(progress);
+    const std::optional<RenderedWorld> rendered =
+        render_share(built, std::move(options), pass_->pass, *share_of_text(settings_.passes.share), settings_.seed);
+    progress.reset();
+    if (!rendered) {
+      say(fmt::format("whit: cannot take a share of \"{}\": its film is of another kind", settings_.passes.pass));
+      return kFileError;
+    }
+    if (int code = write_and_say(built, *rendered, output, viewer); code != kDone) return code;
+    return rendered->result.complete ? kDone : say_stopped(rendered->result);
   }
 
   /// Takes the part of the picture that the flags ask for, which must be one; and parts that are joined must make up all
@@ -308,10 +338,15 @@ class RenderJob {
     return problem.trouble == Checkpoint::Trouble::Different ? kUsage : kFileError;
   }
 
-  RenderIdentity identity() const {
+  RenderIdentity identity_of_whole() const {
     RenderIdentity identity = identity_of(path_, file_);
     for (const auto& [flag, value] : settings_.of_samples) identity.add(flag, value);
     return identity;
+  }
+
+  RenderIdentity identity() const {
+    return pass_ ? identity_of_share(pass_->identity, pass_->id, *share_of_text(settings_.passes.share))
+                 : identity_of_whole();
   }
 
   RenderCommand command() const { return {std::filesystem::current_path().string(), path_, settings_.picture_words}; }
@@ -343,17 +378,36 @@ class RenderJob {
   int approach_and_write(BuiltWorld& built, const RenderOptions& options, const OutputPlan& output,
                          DisplayServer& viewer) {
     Diagnostics early;
-    const TargetOutcome outcome =
-        render_to_target(settings_, built, options, started_, [&](const RenderResult& result) {
-          WrittenOutput written = write_output(output, result, metadata(result));
-          early = std::move(written.said);
-          return written.elapsed.wall;
-        });
+    std::unique_ptr<HandOut> others = hand_out(viewer);
+    const auto write = [&](const RenderResult& result) {
+      WrittenOutput written = write_output(output, result, metadata(result));
+      early = std::move(written.said);
+      return written.elapsed.wall;
+    };
+    const TargetOutcome outcome = render_to_target(settings_, built, options, started_, write, others.get());
+    if (others && !others->problem().empty()) {
+      say("whit: " + others->problem());
+      return others->code();
+    }
     if (int code = report_output(early); code != kDone) return code;
     if (int code = write_and_say(built, outcome.rendered, output, viewer); code != kDone) return code;
     if (StopSignals::come()) say_stopped(outcome.rendered.result);
     return report_target(settings_, outcome,
                          std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count());
+  }
+
+  /// Those who render in the place of this machine, where the flags say so.
+  std::unique_ptr<HandOut> hand_out(DisplayServer& viewer) const {
+    const std::string& folder = settings_.passes.hand_out;
+    if (folder.empty()) return nullptr;
+    std::function<void(const FilmRender&)> look;
+    if (!settings_.display_server.empty()) {
+      look = [&viewer](const FilmRender& film) {
+        const Picture picture = film.picture();
+        viewer.update(picture.window, picture.rgb);
+      };
+    }
+    return std::make_unique<HandOut>(folder, identity_of_whole(), std::move(look));
   }
 
   int write_and_say(const BuiltWorld& built, const RenderedWorld& rendered, const OutputPlan& output,
@@ -364,6 +418,10 @@ class RenderJob {
     if (int code = report(rendered.said); code != kDone) return code;
     if (checkpoint_ && !checkpoint_->fits()) {
       say(fmt::format("whit: cannot go on from \"{}\": its film is of another kind", settings_.checkpoint.resume));
+      return kFileError;
+    }
+    if (checkpoint_ && settings_.output.unwritten && !checkpoint_->write_problem().empty()) {
+      say("whit: " + checkpoint_->write_problem());
       return kFileError;
     }
     if (checkpoint_) warn_of_checkpoint();
@@ -443,11 +501,16 @@ class RenderJob {
   RenderedWorld trace(const BuiltWorld& built, RenderOptions options) const {
     std::optional<Progress> progress;
     if (!settings_.quiet) progress.emplace("rendering");
-    options.progress = [&](double share) {
+    options.progress = shown_by(progress);
+    return render_world(built, std::move(options));
+  }
+
+  /// RenderOptions::progress, seen where somebody looks.
+  static std::function<bool(double)> shown_by(std::optional<Progress>& progress) {
+    return [&progress](double share) {
       if (progress) progress->update(share);
       return !StopSignals::come();
     };
-    return render_world(built, std::move(options));
   }
 
   /// Previews go to the viewer while it can be reached; the render does not depend on it.
@@ -485,6 +548,7 @@ class RenderJob {
   double memory_estimate_ = 0;  ///< Of the world at hand, in bytes.
   StepTimes times_;
   std::unique_ptr<Checkpoint> checkpoint_;
+  std::unique_ptr<PassFile> pass_;  ///< Of which a share is to be rendered.
   OutputPlan denoised_;             ///< Of the world at hand, for --denoise.
   std::set<std::string> written_;   ///< Pictures of this file's worlds.
   bool reported_whole_ = false;     ///< What planning finds has been said with what parsing found.

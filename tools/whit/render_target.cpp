@@ -51,7 +51,7 @@ void use_extending_samplers(const RenderSettings& settings, ParsedFile& file) {
 
 TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world, RenderOptions options,
                                std::chrono::steady_clock::time_point started,
-                               const std::function<double(const RenderResult&)>& write) {
+                               const std::function<double(const RenderResult&)>& write, HandOut* others) {
   using Clock = std::chrono::steady_clock;
   const TargetFlags& flags = settings.target;
   TargetRequest request;
@@ -62,6 +62,11 @@ TargetOutcome render_to_target(const RenderSettings& settings, BuiltWorld& world
     const std::chrono::duration<double> limit(duration_of(flags.time_limit));
     request.deadline = started + std::chrono::duration_cast<Clock::duration>(limit);
     request.first_picture = write;
+  }
+  if (others) {
+    request.render_pass = [others](FilmRender& film, const TargetState& state, const auto& share) {
+      return others->render_pass(film, state, share);
+    };
   }
   std::optional<Progress> progress;
   if (!settings.quiet) progress.emplace("rendering");
