@@ -1,6 +1,7 @@
 """A job: a scene with its files, the flags of its picture, and how the program renders a part of it."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import json
@@ -37,23 +38,32 @@ def program() -> str:
 
 
 class Running:
-    """The program at work."""
+    """The program at work: `process` is it. `stdin` and `stderr` are those of subprocess.Popen."""
 
-    def __init__(self, arguments: list[str], folder: str | None = None) -> None:
+    def __init__(self, arguments: list[str], folder: str | None = None, stdin: int = subprocess.DEVNULL,
+                 stderr: Any = subprocess.PIPE) -> None:
         # Dask's workers have glibc give memory back all the time, for Python's sake: a tenth of a render.
         environment = {k: v for k, v in os.environ.items() if k != "MALLOC_TRIM_THRESHOLD_"}
-        self._process = subprocess.Popen([program(), *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                         stderr=subprocess.PIPE, text=True, env=environment, preexec_fn=_end_with_parent)
+        self.process = subprocess.Popen([program(), *arguments], cwd=folder, stdin=stdin, stdout=subprocess.PIPE, stderr=stderr,
+                                        text=True, env=environment, preexec_fn=_end_with_parent)
 
     def wait(self) -> tuple[str, str]:
         """Its standard output, and what it said beside; FarmError with its words where it fails."""
-        out, said = self._process.communicate()
-        if self._process.returncode != 0:
-            raise FarmError(said.strip() or f"whit ended with {self._process.returncode}", self._process.returncode)
+        out, said = self.process.communicate()
+        if self.process.returncode != 0:
+            raise FarmError(said.strip() or f"whit ended with {self.process.returncode}", self.process.returncode)
         return out, said.strip()
 
     def kill(self) -> None:
-        self._process.kill()
+        self.process.kill()
+
+    def close(self) -> None:
+        """After a kill, or an end: waits for it, and closes what leads to it."""
+        self.process.wait()
+        for stream in (self.process.stdin, self.process.stdout, self.process.stderr):
+            if stream:
+                with contextlib.suppress(BrokenPipeError):
+                    stream.close()
 
 
 def run(arguments: list[str], folder: str | None = None) -> str:
@@ -121,24 +131,50 @@ def folder_of(job: Job) -> str:
                         key)
 
 
+def scene_of(job: Job, contents: dict[str, bytes]) -> str:
+    """Where the scene is on this machine, once its files have been laid there if they travelled."""
+    if not job.files:
+        return job.scene
+    folder = folder_of(job)
+    os.makedirs(folder, mode=0o700, exist_ok=True)
+    return unpack(job, contents, folder)
+
+
+def given_back(state: str, keep: str) -> bytes:
+    """The bytes of a file; none where it is put into the file `keep`."""
+    if keep:
+        shutil.move(state, keep + ".new")
+        os.replace(keep + ".new", keep)
+        return b""
+    with open(state, "rb") as f:
+        return f.read()
+
+
+def render_share(job: Job, of_pass: bytes | str, share: str, threads: int, contents: dict[str, bytes],
+                 keep: str = "") -> tuple[bytes, float]:
+    """The part that a share of a pass is, as render_part() has it, and the seconds of it that were rendering. `of_pass` is the
+    pass's file, or what is in it; `share` as --share has it. Runs on a worker."""
+    scene = scene_of(job, contents)
+    with tempfile.TemporaryDirectory(prefix="whit-share-") as work:
+        state, stats, file = (os.path.join(work, name) for name in ("part", "stats.json", "pass"))
+        if isinstance(of_pass, bytes):
+            with open(file, "wb") as f:
+                f.write(of_pass)
+        run([scene, *job.flags, "--pass", of_pass if isinstance(of_pass, str) else file, "--share", share, "--nthreads", str(threads), "--checkpoint", state, "--every",
+             "1h", "--quiet", "--stats=" + stats], folder=os.path.dirname(scene))
+        with open(stats, encoding="utf-8") as f:
+            return given_back(state, keep), json.load(f)["seconds"]["render"]
+
+
 def render_part(job: Job, part: Part, threads: int, contents: dict[str, bytes], keep: str = "") -> bytes:
     """The bytes of a part, for `whit merge`; none where the worker sees the file `keep`, which they are put into. Runs on a
     worker."""
-    scene = job.scene
-    if job.files:
-        folder = folder_of(job)
-        os.makedirs(folder, mode=0o700, exist_ok=True)
-        scene = unpack(job, contents, folder)
+    scene = scene_of(job, contents)
     with tempfile.TemporaryDirectory(prefix="whit-part-") as work:
         state = os.path.join(work, "part")
         run([scene, *job.flags, *part.flags(), "--nthreads", str(threads), "--checkpoint", state, "--every", "1h", "--outfile",
              "none", "--quiet"], folder=os.path.dirname(scene))
-        if keep:
-            shutil.move(state, keep + ".new")
-            os.replace(keep + ".new", keep)
-            return b""
-        with open(state, "rb") as f:
-            return f.read()
+        return given_back(state, keep)
 
 
 def merge(job: Job, parts: list[str], outfile: str, flags: Sequence[str] = ()) -> str:

@@ -88,3 +88,30 @@ def schedule(seconds: list[float], workers: int) -> float:
 def simulate(parts: list[Part], workers: int, model: TimeModel, pixels: int) -> float:
     """Seconds until the last part has ended, by the time model."""
     return schedule([model.seconds(p, pixels) for p in parts], workers)
+
+
+# Shares for each worker where they are worth their starts: so many that the last ends with the others.
+SHARES_EACH = 4
+
+
+@dataclass
+class ShareCost:
+    """What shares of passes take, by those that there were: seconds of each start, and of one sample of one pixel."""
+    fixed: float = 0
+    per_sample: float = 0
+
+    def note(self, samples: float, shares: int, seconds: float, rendering: float) -> None:
+        """A pass of so many samples: the seconds of all shares, and those of them that were rendering. The last pass says
+        most of the next, which is of nearly the same pixels."""
+        self.fixed = max(0.0, seconds - rendering) / shares
+        self.per_sample = rendering / max(samples, 1.0)
+
+
+def count_of_shares(samples: float, tiles: int, workers: int, cost: ShareCost) -> int:
+    """Into how many shares to cut a pass of so many samples: one for each worker, but none that takes less than its start;
+    and several for each, where starts are then no more than a twentieth."""
+    if cost.per_sample == 0:
+        return max(1, min(workers, tiles))
+    starts = samples * cost.per_sample / max(cost.fixed, 1e-9)
+    count = max(min(workers, starts), min(SHARES_EACH * workers, MOST_OVERHEAD * starts))
+    return max(1, min(tiles, int(count)))

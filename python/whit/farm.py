@@ -20,8 +20,9 @@ from ._farm_job import FarmError, Job, measure, merge, program, render_part, siz
 from ._farm_plan import Part, TimeModel, cut, schedule, simulate
 from ._farm_preview import Preview
 from ._farm_slurm import slurm_script
+from ._farm_target import TargetReport, is_asked_for, render_to_target
 
-__all__ = ["FarmError", "Report", "render", "main"]
+__all__ = ["FarmError", "Report", "TargetReport", "render", "main"]
 
 
 @dataclass
@@ -85,17 +86,25 @@ def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: S
 def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers: int = 0, threads: int = 1,
            scheduler: str = "", cluster: str = "local", cluster_options: str = "{}", shared: bool = False,
            model: TimeModel | None = None, parts_in: str = "", display_server: str = "",
-           progress: Callable[[float], None] | None = None, warn: Callable[[str], None] = warnings.warn) -> Report:
+           progress: Callable[[float], None] | None = None, warn: Callable[[str], None] = warnings.warn) -> Report | TargetReport:
     """Renders a scene on many workers to `outfile` (the scene's own name without it), with the bits of a single render.
 
     `flags` are those of `whit render` that a picture depends on. `threads` are those of a worker; `workers` 0 is as many as
     this machine's cores let run. `shared`: the workers see the scene's files where they are here; else they travel, once to
     each machine. `model`: the scene's time model, which is measured here for some seconds otherwise. `parts_in`: a folder in
     which the parts stay. `display_server`: host:port of a tev viewer that shows the picture while it is made; one that fails
-    is told of by `warn`, and ends nothing. Raises FarmError with the program's words.
+    is told of by `warn`, and ends nothing. With --target-error among the flags the passes of the render are shared out, as
+    many as it takes, and the report is another one. Raises FarmError with the program's words.
     """
     workers = workers or max(1, (os.cpu_count() or 1) // threads)
     job = Job(os.path.abspath(scene), scene, tuple(flags))
+    if is_asked_for(flags):
+        is_here = cluster == "local" and not scheduler
+        with tempfile.TemporaryDirectory(prefix="whit-farm-") as temporary, clusters.client_of(
+                scheduler, cluster, cluster_options, workers) as client:
+            return render_to_target(client, job, job if is_here or shared else job.with_files(), workers, threads,
+                                    os.path.abspath(parts_in) if parts_in else temporary, is_here, bool(parts_in), outfile,
+                                    display_server, progress, warn)
     width, height, samples = size_of(job)
     model = model or measure(job, threads, (width, height, samples))
     parts = cut(width, height, samples, workers, model)
@@ -175,8 +184,22 @@ def write_slurm_script(job: Job, args: argparse.Namespace) -> None:
           f"bash {args.slurm_script} merge", file=sys.stderr)
 
 
-def run_command(args: argparse.Namespace, flags: list[str]) -> None:
+def say_report(report: Report | TargetReport) -> None:
+    if isinstance(report, TargetReport):
+        print(f"whit-farm: {report.summary()}", file=sys.stderr)
+        return
+    replayed = schedule(report.part_seconds, report.workers)
+    print(f"whit-farm: {len(report.parts)} parts on {report.workers} workers in {report.seconds:.3g} s (the time model: "
+          f"{report.predicted_seconds:.3g} s; the parts' own times: {replayed:.3g} s), joined in {report.merge_seconds:.3g} s",
+          file=sys.stderr)
+
+
+def run_command(args: argparse.Namespace, flags: list[str]) -> int:
+    """The exit code."""
     job = Job(os.path.abspath(args.scene), args.scene, tuple(flags))
+    if is_asked_for(flags) and (args.simulate or args.slurm_script):
+        raise FarmError("--target-error: how many samples it takes is decided while it renders, which neither a job array nor a "
+                        "schedule can do; --spp says how many", 2)
     if args.simulate:
         say_schedule(job, args)
     elif args.slurm_script:
@@ -190,17 +213,16 @@ def run_command(args: argparse.Namespace, flags: list[str]) -> None:
             with open(1 if args.json == "-" else args.json, "w", encoding="utf-8", closefd=args.json != "-") as f:
                 f.write(report.json() + "\n")
         if not args.quiet:
-            replayed = schedule(report.part_seconds, report.workers)
-            print(f"whit-farm: {len(report.parts)} parts on {report.workers} workers in {report.seconds:.3g} s (the time model: "
-                  f"{report.predicted_seconds:.3g} s; the parts' own times: {replayed:.3g} s), joined in "
-                  f"{report.merge_seconds:.3g} s", file=sys.stderr)
+            say_report(report)
+        if isinstance(report, TargetReport):
+            return report.code
+    return 0
 
 
 def main(words: Sequence[str] | None = None) -> int:
     args, flags = arguments_of(sys.argv[1:] if words is None else words)
     try:
-        run_command(args, flags)
-        return 0
+        return run_command(args, flags)
     except FarmError as e:
         print(f"whit-farm: {e}", file=sys.stderr)
         return e.code

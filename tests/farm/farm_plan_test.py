@@ -5,7 +5,8 @@ import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
 import package  # noqa: E402,F401  (finds the package)
-from whit._farm_plan import BYTES_PER_PIXEL, MOST_BYTES, Part, TimeModel, bands, cut, schedule, simulate  # noqa: E402
+from whit._farm_plan import (BYTES_PER_PIXEL, MOST_BYTES, Part, ShareCost, TimeModel, bands, count_of_shares, cut,  # noqa: E402
+                             schedule, simulate)
 
 
 class Plan(unittest.TestCase):
@@ -53,6 +54,18 @@ class Plan(unittest.TestCase):
 
     def test_flags(self):
         self.assertEqual(Part(0, 8, 16, 32, 5, 7).flags(), ["--crop-pixels", "0", "8", "16", "32", "--sample-range", "5:7"])
+
+    def test_shares_are_worth_their_start(self):
+        # A start of 0.1 s and 1e-6 s for a sample: 1e5 samples take as long as a start.
+        cost = ShareCost()
+        self.assertEqual(count_of_shares(4e5, 100, 8, cost), 8)  # of which nothing is known
+        cost.note(8e6, 4, 8.4, 8)
+        self.assertAlmostEqual(cost.fixed, 0.1)
+        self.assertAlmostEqual(cost.per_sample, 1e-6)
+        for samples, expected in ((1e3, 1), (1.5e5, 1), (3.5e5, 3), (8.5e5, 8), (1.5e7, 8), (2.41e7, 12), (1e9, 32)):
+            self.assertEqual(count_of_shares(samples, 10000, 8, cost), expected, samples)
+        self.assertEqual(count_of_shares(1e9, 5, 8, cost), 5)  # no more than there are tiles
+        self.assertEqual(count_of_shares(1, 1, 8, ShareCost(0, 1e-6)), 1)
 
 
 if __name__ == "__main__":

@@ -107,6 +107,56 @@ class Farm(unittest.TestCase):
         self.assertEqual(len(said), 1, said)
         self.assertIn("cannot reach display server 127.0.0.1:9", said[0])
 
+    def test_to_an_accuracy_with_a_worker_that_is_killed(self):
+        # It is killed in the third pass; its share then runs again, on the other.
+        flags = ["--target-error", "1.5%", "--aov", "N,shape,variance,samples"]
+        self.whole(*flags)
+        killed, viewer = [], Viewer()
+        self.addCleanup(viewer.close)
+
+        def progress(share):
+            if not killed and len(os.listdir(self.path("parts"))) and share > 0.1:
+                mine = [p for p in _processes_with("spawn_main") if _descends_from(p, os.getpid())]
+                os.kill(mine[-1], signal.SIGKILL)
+                killed.append(mine[-1])
+
+        report = farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=flags, workers=2, progress=progress,
+                             parts_in=self.path("parts"), display_server=viewer.address, warn=self.fail)
+        self.assertEqual(len(killed), 1)
+        self.assertEqual((report.code, report.outcome["met"]), (0, True))
+        self.assertGreater(len(report.passes), 3)
+        self.assertEqual(sum(len(p.share_seconds) for p in report.passes), len(os.listdir(self.path("parts"))))
+        self.expect_the_same()
+        self.assertEqual(len(viewer.made), 1)
+        self.assertGreater(len(viewer.updates), 3)
+
+    def test_an_accuracy_that_is_not_reached(self):
+        # As on one machine: the picture is there, and the exit code is 5.
+        flags = ["--target-error", "0.01%", "--max-samples", "16"]
+        subprocess.run([package.WHIT, self.path("scene.pbrt"), *flags, "--quiet", "--display", "none", "-o", self.path("whole.exr")],
+                       check=False, cwd=self.folder)
+        said = _said_by([self.path("scene.pbrt"), "-o", self.path("farm.exr"), "--json", self.path("r.json"), "--", *flags], 5, self)
+        self.assertIn("not met with --max-samples", said)
+        self.expect_the_same()
+        with open(self.path("r.json"), encoding="utf-8") as f:
+            self.assertEqual(json.load(f)["code"], 5)
+
+    def test_an_accuracy_with_files_that_travel(self):
+        import distributed
+        flags = ["--target-error", "4%"]
+        self.whole(*flags)
+        with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
+            farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=flags, scheduler=cluster.scheduler_address, workers=2)
+        self.expect_the_same()
+
+    def test_what_only_one_machine_can_do(self):
+        for words, expected in ((["--", "--time-limit", "5s"], "--time-limit is of one machine's clock"),
+                                (["--slurm-script", self.path("j.sh"), "--", "--target-error", "1%"], "neither a job array"),
+                                (["--simulate", "8", "--", "--target-error=1%"], "nor a schedule"),
+                                (["--", "--target-error", "none"], "is no error above 0")):
+            with self.subTest(words=words):
+                self.assertIn(expected, _said_by([self.path("scene.pbrt"), *words], 2, self))
+
     def test_files_travel_once_by_what_is_in_them(self):
         # The scheduler is somebody else's, so the workers are not thought to see this folder.
         import distributed
