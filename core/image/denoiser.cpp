@@ -35,6 +35,7 @@ struct Denoiser::Functions {
   void (*set_image)(Filter, const char* name, void* at, int format, size_t width, size_t height, size_t offset,
                     size_t pixel_stride, size_t row_stride);
   void (*set_bool)(Filter, const char* name, bool value);
+  void (*set_int)(Filter, const char* name, int value);
   void (*commit_filter)(Filter);
   void (*execute_filter)(Filter);
   void (*release_filter)(Filter);
@@ -60,6 +61,7 @@ bool take_all(void* library, Functions& f) {
          take(library, f.release_device, "oidnReleaseDevice") && take(library, f.new_filter, "oidnNewFilter") &&
          take(library, f.set_image, "oidnSetSharedFilterImage") &&
          take(library, f.set_bool, "oidnSetFilterBool", "oidnSetFilter1b") &&
+         take(library, f.set_int, "oidnSetFilterInt", "oidnSetFilter1i") &&
          take(library, f.commit_filter, "oidnCommitFilter") && take(library, f.execute_filter, "oidnExecuteFilter") &&
          take(library, f.release_filter, "oidnReleaseFilter");
 }
@@ -170,10 +172,11 @@ class Run {
                    static_cast<size_t>(height), 0, 0, 0);
   }
 
-  /// "" or what went wrong.
-  std::string execute() {
+  /// "" or what went wrong. `memory`: bytes that it may take.
+  std::string execute(size_t memory) {
     if (filter_) {
       f_.set_bool(filter_, "hdr", true);
+      f_.set_int(filter_, "maxMemoryMB", static_cast<int>(memory >> 20));
       f_.commit_filter(filter_);
       f_.execute_filter(filter_);
     }
@@ -205,8 +208,15 @@ Denoiser::Output Denoiser::denoise(const Input& input) const {
                                      {"output", static_cast<const float*>(out.rgb.data())}}) {
     run.set_image(name, values, input.width, input.height);
   }
-  if (const std::string problem = run.execute(); !problem.empty()) out.error = "OpenImageDenoise: " + problem;
+  const size_t bytes = memory(static_cast<double>(input.width) * input.height);
+  if (const std::string problem = run.execute(bytes); !problem.empty()) out.error = "OpenImageDenoise: " + problem;
   return out;
+}
+
+// The network has about 220 floats for each pixel of a tile; its weights and what they are brought into take some MiB.
+size_t Denoiser::memory(double pixels) {
+  constexpr double kLeast = 64 << 20, kMost = 1 << 30, kPixel = 880;
+  return static_cast<size_t>(std::min(kLeast + kPixel * pixels, kMost));
 }
 
 std::string Denoiser::describe() const {

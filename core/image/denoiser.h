@@ -30,6 +30,10 @@ class Denoiser {
   };
   Output denoise(const Input& input) const;
 
+  /// Bytes that the library may take beside the input and the output, for so many pixels: it is told so, and works tile by
+  /// tile where that is less than it likes.
+  static size_t memory(double pixels);
+
   /// "OpenImageDenoise 1.4.3"
   std::string describe() const;
   /// The library's file.

@@ -57,48 +57,38 @@ uint64_t size_of(const PictureFile& file) {
   return failed ? 0 : size;
 }
 
-/// A picture that is open, or is as good as open.
-struct Header {
-  ImageInfo info;
-  size_t reading = 0;  ///< Bytes that its reader takes.
-};
+}  // namespace
 
-std::optional<Header> header_of(const PictureFile& file) {
+std::optional<PictureHeader> quick_header(const PictureFile& file) {
   try {
     if (size_of(file) == 0) return std::nullopt;
     if (kind_of_picture(file) != PictureKind::Other) {
       const auto rows = open_picture(file);
-      return Header{rows->info, rows->memory()};
+      return PictureHeader{rows->info, rows->memory()};
     }
     if (!exr_header_problem(file).empty()) return std::nullopt;
     if (!file.bytes && Imf::isOpenExrFile(file.path.c_str())) {
       // OpenImageIO hands out strips of 256 rows.
-      Header header{exr_header(file.path), 0};
+      PictureHeader header{exr_header(file.path), 0};
       const size_t row = sizeof(float) * static_cast<size_t>(header.info.width) * header.info.channels;
       header.reading = 2 * row * std::min<size_t>(256, header.info.height);
       return header;
     }
     if (std::optional<ImageInfo> info = pfm_header(file)) {
       const size_t bytes = sizeof(float) * static_cast<size_t>(info->width) * info->height * info->channels;
-      return Header{std::move(*info), bytes};
+      return PictureHeader{std::move(*info), bytes};
     }
     if (size_of(file) < kLeastOfOthers) return std::nullopt;
     const auto rows = open_picture(file);
-    return Header{rows->info, rows->memory()};
+    return PictureHeader{rows->info, rows->memory()};
   } catch (const std::exception&) {
     return std::nullopt;  // Whoever reads it says why.
   }
 }
 
-}  // namespace
-
-std::optional<ImageInfo> quick_header(const PictureFile& file) {
-  const std::optional<Header> header = header_of(file);
-  return header ? std::optional(header->info) : std::nullopt;
-}
-
 MemoryNeed texture_need(const TextureSpec& spec) {
-  const std::optional<Header> header = header_of(spec.bytes ? PictureFile(spec.bytes) : PictureFile(spec.path));
+  const std::optional<PictureHeader> header =
+      quick_header(spec.bytes ? PictureFile(spec.bytes) : PictureFile(spec.path));
   if (!header) return {};
   const MipMapOptions options{.single = spec.kind == TextureKind::Float,
                               .alpha = spec.channel == TextureChannel::Alpha,

@@ -13,7 +13,13 @@ namespace whit {
 /// OpenImageIO knows: loading that takes longer than many a scene.
 MemoryNeed texture_need(const TextureSpec& spec);
 
+/// What is told of a picture before it is read.
+struct PictureHeader {
+  ImageInfo info;
+  size_t reading = 0;  ///< Bytes that its reader takes beside the numbers that it gives.
+};
+
 /// The header of a picture, under the same conditions: nothing where it is not told.
-std::optional<ImageInfo> quick_header(const PictureFile& file);
+std::optional<PictureHeader> quick_header(const PictureFile& file);
 
 }  // namespace whit

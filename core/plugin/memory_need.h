@@ -27,6 +27,7 @@ struct MemoryNeed {
   std::string picture{};   ///< Equal for those that share them.
   uint64_t light_map = 0;  ///< Bytes that a map of light takes for good.
 
+  uint64_t table = 0;   ///< Bytes that a material keeps of a file of its own.
   uint64_t making = 0;  ///< Bytes beside all that, at most, while it is read or made.
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "core/image/denoiser.h"
+
 namespace whit {
 namespace {
 
@@ -102,6 +104,7 @@ double unit_bytes(const FilmSize& s, const AovNumbers& aovs, bool blocks) {
 /// linear file.
 void plan_output_memory(const FilmSize& s, const AovNumbers& aovs, const FilmNeed& need, const MemoryPart& film,
                         MemoryPlan& memory) {
+  constexpr double kPixel = 3 * sizeof(float);
   const double pixels = s.width * s.height;
   const double picture = pixels * sizeof(float) * (3 + aovs.channels);
   const double display = need.display ? pixels * (3 * sizeof(float) + 3 + 3 + 3) : 0;
@@ -109,7 +112,16 @@ void plan_output_memory(const FilmSize& s, const AovNumbers& aovs, const FilmNee
   StepBytes output{};
   output[static_cast<size_t>(MemoryStep::Finishing)] = picture;
   output[static_cast<size_t>(MemoryStep::Writing)] = picture + display + std::min(rows, picture);
+  output[static_cast<size_t>(MemoryStep::Denoising)] = need.denoise ? picture : 0;
+  output[static_cast<size_t>(MemoryStep::Rendering)] = need.kept_pictures * kPixel * pixels;
   memory.add(MemoryUse::Output, output, {picture, film.where, film.what});
+  if (!need.denoise) return;
+  // What it is given and makes; then that is written, as the picture was before.
+  const double making = 3 * kPixel * pixels + static_cast<double>(Denoiser::memory(s.width * s.height));
+  const double writing = kPixel * pixels + display + (need.linear ? std::min(2 * 256 * s.width, pixels) * kPixel : 0);
+  StepBytes denoiser{};
+  denoiser[static_cast<size_t>(MemoryStep::Denoising)] = std::max(making, writing);
+  memory.add(MemoryUse::Denoiser, denoiser, {making, film.where, film.what});
 }
 
 }  // namespace
@@ -130,7 +142,8 @@ void plan_film_memory(const BoundScene& bound, const FilmNeed& need, MemoryPlan&
   constexpr double kJudging = 36;
   if (need.blocks) memory.add_from(MemoryStep::Rendering, MemoryUse::Film, kJudging * s.width * s.height);
   StepBytes bytes{};
-  bytes[static_cast<size_t>(MemoryStep::Rendering)] = bytes[static_cast<size_t>(MemoryStep::Finishing)] = film;
+  bytes[static_cast<size_t>(MemoryStep::Rendering)] = need.films * film;
+  bytes[static_cast<size_t>(MemoryStep::Finishing)] = need.films * film;
   memory.add(MemoryUse::Film, bytes, part);
   plan_output_memory(s, aovs, need, part, memory);
   const int threads = need.threads > 0 ? need.threads : tbb::this_task_arena::max_concurrency();

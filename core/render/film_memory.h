@@ -18,6 +18,9 @@ struct FilmNeed {
   bool blocks = false, adaptive = false;
   std::vector<std::string> aovs{};     ///< Names that there are.
   bool linear = true, display = true;  ///< Files that are written: of linear numbers, of numbers for displays.
+  bool denoise = false;                ///< Beside the picture, one that a denoiser makes of it.
+  int films = 1;                       ///< That grow side by side, each with sums of its own.
+  double kept_pictures = 0;            ///< Of three floats a pixel, beside what is written, while there are films.
 };
 
 /// Adds that to a plan; nothing where film or filter are no good, for then no picture will be made.

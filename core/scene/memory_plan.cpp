@@ -11,6 +11,7 @@
 
 #include "core/plugin/memory_limit.h"
 #include "core/plugin/memory_need.h"
+#include "core/scene/motion.h"
 
 namespace whit {
 namespace {
@@ -20,8 +21,10 @@ struct Measured {
   static constexpr double kTriangle = 57, kPiece = 85;  ///< In Embree's trees: of a mesh, of a curve.
   static constexpr double kBuilding = 32;               ///< Of each of these beside, while the trees are made.
   static constexpr double kInstance = 525;
-  static constexpr double kShape = 2100;    ///< Of any kind: its plugin, its geometry for Embree, its surface.
-  static constexpr double kEmitter = 1450;  ///< A triangle that shines is a light.
+  static constexpr double kKey = 360;     ///< Of an instance that moves, beyond the first of its keyframes.
+  static constexpr double kGroup = 4200;  ///< Of what is placed as a whole: an object, a shape that moves.
+  static constexpr double kShape = 2100;  ///< Of any kind: its plugin, its geometry for Embree, its surface.
+  static constexpr double kLight = 1400;  ///< Of a statement; and each triangle, or other shape, that shines is one.
 };
 
 struct UseText {
@@ -31,23 +34,36 @@ constexpr UseText kUses[kMemoryUses] = {
     {"program and scene text", "program", "meshes in PLY files take less than lists in the scene's text"},
     {"meshes", "meshes", "fewer triangles or levels of subdivision; objects that are placed many times are there once"},
     {"curves", "curves", "fewer curves; objects that are placed many times are there once"},
-    {"shapes", "shapes", "fewer shapes: meshes instead of many small ones"},
-    {"instances", "instances", "fewer instances, or several objects in one that is placed"},
+    {"shapes and lights", "shapes", "fewer of them: meshes instead of many small ones"},
+    {"instances", "instances", "fewer of them, fewer things that move, or several objects in one that is placed"},
     {"ray tracer", "ray_tracer", "fewer triangles, or of curves a smaller \"splitdepth\""},
     {"textures", "textures", "smaller pictures"},
     {"light maps", "light_maps", "a smaller map"},
+    {"tables of materials", "tables", "a smaller table"},
     {"film", "film", "a smaller resolution, a part of it (--cropwindow), fewer AOVs or a narrower filter"},
     {"workers", "workers", "fewer threads (--nthreads)"},
     {"output", "output", "a smaller resolution, a part of it (--cropwindow) or fewer AOVs"},
+    {"denoiser", "denoiser", "a smaller resolution, a part of it (--cropwindow), or no --denoise"},
 };
 
-constexpr const char* kSteps[kMemorySteps][2] = {
-    {"reading shapes", "reading"},    {"placing shapes", "placing"},
-    {"reading light maps", "lights"}, {"building the ray tracer", "ray_tracer"},
-    {"rendering", "rendering"},       {"finishing the picture", "finishing"},
-    {"writing files", "writing"}};
+constexpr const char* kSteps[kMemorySteps][2] = {{"reading materials", "materials"},
+                                                 {"reading shapes", "reading"},
+                                                 {"placing shapes", "placing"},
+                                                 {"reading light maps", "lights"},
+                                                 {"building the ray tracer", "ray_tracer"},
+                                                 {"rendering", "rendering"},
+                                                 {"finishing the picture", "finishing"},
+                                                 {"writing files", "writing"},
+                                                 {"denoising", "denoising"}};
 
 constexpr size_t index_of(MemoryStep step) { return static_cast<size_t>(step); }
+
+/// So many bytes from one step on, to the last.
+StepBytes from(MemoryStep first, double bytes) {
+  StepBytes out{};
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(index_of(first)), out.end(), bytes);
+  return out;
+}
 
 /// What shapes and pictures will need, in the order of their statements; of all at once, for files are opened for it.
 template <class T>
@@ -121,12 +137,14 @@ void plan_shapes(const BoundScene& bound, const EffectPlan& plan, int threads, M
     (b.curves ? curves : meshes).push_back(b);
     making.push_back(b.making);
     const MemoryUse use = b.curves ? MemoryUse::Curves : MemoryUse::Meshes;
-    StepBytes bytes{b.read, 0, b.placed, b.placed, b.placed, b.placed, b.placed};
+    StepBytes bytes = from(MemoryStep::Lights, b.placed);
+    bytes[index_of(MemoryStep::Reading)] = b.read;
     memory.add(use, bytes, part);
     memory.add_from(MemoryStep::Reading, use, static_cast<double>(needs[i].mapped));
-    StepBytes tree{0, 0, 0, b.tree + b.tree_making, b.tree, b.tree, b.tree};
+    StepBytes tree = from(MemoryStep::RayTracer, b.tree);
+    tree[index_of(MemoryStep::RayTracer)] += b.tree_making;
     memory.add(MemoryUse::RayTracer, tree, {b.tree, part.where, part.what});
-    if (shapes[i].area_light >= 0) emitters += static_cast<double>(needs[i].triangles);
+    if (shapes[i].area_light >= 0) emitters += std::max(1.0, static_cast<double>(needs[i].triangles));
   }
   StepBytes placing{};
   placing[index_of(MemoryStep::Placing)] = most_while_placing(meshes);
@@ -137,21 +155,85 @@ void plan_shapes(const BoundScene& bound, const EffectPlan& plan, int threads, M
   reading[index_of(MemoryStep::Reading)] = sum_of_largest(std::move(making), threads);
   memory.add(MemoryUse::Meshes, reading);
   memory.add_from(MemoryStep::Reading, MemoryUse::Shapes, count * Measured::kShape);
-  memory.add_from(MemoryStep::Lights, MemoryUse::Shapes, emitters * Measured::kEmitter);
+  memory.add_from(MemoryStep::Lights, MemoryUse::Shapes, emitters * Measured::kLight);
 }
 
-void plan_instances(const BoundScene& bound, MemoryPlan& memory) {
+/// Tables are read before anything else is.
+void plan_materials(const BoundScene& bound, const EffectPlan& plan, int threads, MemoryPlan& memory) {
+  const std::vector<MemoryNeed> needs = needs_of(bound.materials, plan.material_live, plan.attributes);
+  std::vector<double> making;
+  for (size_t i = 0; i < needs.size(); ++i) {
+    const auto bytes = static_cast<double>(needs[i].table);
+    if (bytes == 0) continue;
+    making.push_back(static_cast<double>(needs[i].making));
+    memory.add_from(MemoryStep::Materials, MemoryUse::Tables, bytes,
+                    {bytes, bound.materials[i].where, "the table of a material"});
+  }
+  StepBytes reading{};
+  reading[index_of(MemoryStep::Materials)] = sum_of_largest(std::move(making), threads);
+  memory.add(MemoryUse::Tables, reading);
+}
+
+/// Of what is placed as a whole. A shape that moves is; one of an object is placed wherever that is.
+class Places {
+ public:
+  Places(const BoundScene& bound, const EffectPlan& plan)
+      : scene_(*bound.description), motion_(!plan.off.has(Effect::MotionBlur)), objects_(scene_.objects.size() + 1) {
+    for (size_t i = 0; i < scene_.shapes.size(); ++i) {
+      const ShapeDescription& shape = scene_.shapes[i];
+      if (!plan.shape_live[i]) continue;
+      Object& object = objects_[static_cast<size_t>(shape.object + 1)];
+      object.stands |= !moves(shape.transform);
+      if (!moves(shape.transform)) continue;
+      ++object.moving, ++moving_shapes_;
+      object.bytes += bytes_of(shape.transform);
+    }
+  }
+
+  double groups() const { return static_cast<double>(scene_.objects.size()) + moving_shapes_; }
+  double bytes_of_world() const { return objects_[0].bytes; }
+  /// What moves in an object, and with it, has as many keyframes as the one or the other.
+  double bytes_of(const InstanceDescription& instance) const {
+    const Object& object = objects_[static_cast<size_t>(instance.object + 1)];
+    const double place = bytes_of(instance.transform);
+    return (object.stands ? place : 0) + std::max(object.bytes, object.moving * place);
+  }
+
+ private:
+  struct Object {
+    bool stands = false;           ///< Some of it does not move.
+    double moving = 0, bytes = 0;  ///< Shapes that do, and their places.
+  };
+  TransformPair pair(int transform) const { return scene_.transforms[static_cast<size_t>(transform)]; }
+  bool moves(int transform) const { return motion_ && pair(transform).animated(); }
+  double bytes_of(int transform) const {
+    const size_t keys = moves(transform) ? keyframes(pair(transform)).size() : 1;
+    return Measured::kInstance + Measured::kKey * static_cast<double>(keys - 1);
+  }
+
+  const SceneDescription& scene_;
+  const bool motion_;
+  std::vector<Object> objects_;  ///< The world first.
+  double moving_shapes_ = 0;
+};
+
+void plan_instances(const BoundScene& bound, const EffectPlan& plan, MemoryPlan& memory) {
+  const Places places(bound, plan);
   const auto& instances = bound.description->instances;
+  memory.add_from(MemoryStep::Placing, MemoryUse::Instances,
+                  places.groups() * Measured::kGroup + places.bytes_of_world());
   if (instances.empty()) return;
-  const auto n = static_cast<double>(instances.size());
-  memory.add_from(MemoryStep::Placing, MemoryUse::Instances, n * Measured::kInstance,
-                  {n * Measured::kInstance, instances[0].where, fmt::format("{} instances", instances.size())});
+  double bytes = 0;
+  for (const InstanceDescription& instance : instances) bytes += places.bytes_of(instance);
+  memory.add_from(MemoryStep::Placing, MemoryUse::Instances, bytes,
+                  {bytes, instances[0].where, fmt::format("{} instances", instances.size())});
 }
 
 void plan_lights(const BoundScene& bound, const EffectPlan& plan, MemoryPlan& memory) {
   const std::vector<MemoryNeed> needs = needs_of(bound.lights, plan.light_live, plan.attributes);
-  double making = 0;
+  double making = 0, count = 0;
   for (size_t i = 0; i < needs.size(); ++i) {
+    count += plan.light_live[i] ? 1 : 0;
     const auto bytes = static_cast<double>(needs[i].light_map);
     if (bytes > 0) making = std::max(making, static_cast<double>(needs[i].making));
     if (bytes > 0)
@@ -161,6 +243,9 @@ void plan_lights(const BoundScene& bound, const EffectPlan& plan, MemoryPlan& me
   StepBytes reading{};
   reading[index_of(MemoryStep::Lights)] = making;
   memory.add(MemoryUse::LightMaps, reading);
+  if (count > 0)
+    memory.add_from(MemoryStep::Lights, MemoryUse::Shapes, count * Measured::kLight,
+                    {count * Measured::kLight, bound.lights[0].where, fmt::format("{:g} lights", count)});
 }
 
 }  // namespace
@@ -178,9 +263,7 @@ void MemoryPlan::add(MemoryUse use, const StepBytes& bytes, const MemoryPart& pa
 }
 
 void MemoryPlan::add_from(MemoryStep first, MemoryUse use, double bytes, const MemoryPart& part) {
-  StepBytes from{};
-  std::fill(from.begin() + static_cast<std::ptrdiff_t>(index_of(first)), from.end(), bytes);
-  add(use, from, part);
+  add(use, from(first, bytes), part);
 }
 
 double MemoryPlan::total(MemoryStep step) const {
@@ -206,9 +289,7 @@ double MemoryPlan::least_texture_cap() const {
 void MemoryPlan::cap_textures(double bytes) {
   texture_cap_ = bytes;
   const double taken = std::min(all_textures_ + most_decoding_, std::max(bytes, least_texture_cap()));
-  StepBytes& textures = bytes_[static_cast<size_t>(MemoryUse::Textures)];
-  textures = {};
-  std::fill(textures.begin() + static_cast<std::ptrdiff_t>(index_of(MemoryStep::Rendering)), textures.end(), taken);
+  bytes_[static_cast<size_t>(MemoryUse::Textures)] = from(MemoryStep::Rendering, taken);
 }
 
 // Lights that project pictures have them as textures do.
@@ -231,8 +312,9 @@ void plan_textures(const BoundScene& bound, const EffectPlan& plan, int threads,
 
 void plan_scene_memory(const BoundScene& bound, const EffectPlan& plan, int threads, double texture_cap,
                        MemoryPlan& memory) {
+  plan_materials(bound, plan, threads, memory);
   plan_shapes(bound, plan, threads, memory);
-  plan_instances(bound, memory);
+  plan_instances(bound, plan, memory);
   plan_lights(bound, plan, memory);
   plan_textures(bound, plan, threads, memory);
   memory.cap_textures(texture_cap);

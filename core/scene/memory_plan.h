@@ -18,23 +18,35 @@ enum class MemoryUse : uint8_t {
   Program,    ///< The program, the scene's text and its description.
   Meshes,     ///< Vertices and triangles.
   Curves,     ///< Their control points.
-  Shapes,     ///< What each shape takes whatever it is, and lights of shapes that emit.
-  Instances,  ///< Places of objects.
+  Shapes,     ///< What each shape takes whatever it is, and each light.
+  Instances,  ///< Places of objects, and of what moves.
   RayTracer,  ///< Its trees of boxes.
   Textures,
   LightMaps,
+  Tables,   ///< That materials read from files.
   Film,     ///< Sums of samples, and of AOVs.
   Workers,  ///< Threads that render.
-  Output    ///< Finished pictures, and files on their way.
+  Output,   ///< Finished pictures, and files on their way.
+  Denoiser  ///< What takes the noise out of one, and what it is given.
 };
-inline constexpr size_t kMemoryUses = 11;
+inline constexpr size_t kMemoryUses = 13;
 /// "ray tracer", and the word that JSON has: "ray_tracer".
 const char* memory_use_text(MemoryUse use);
 const char* memory_use_key(MemoryUse use);
 
 /// The steps of a render, in order. Each has what is there meanwhile.
-enum class MemoryStep : uint8_t { Reading, Placing, Lights, RayTracer, Rendering, Finishing, Writing };
-inline constexpr size_t kMemorySteps = 7;
+enum class MemoryStep : uint8_t {
+  Materials,
+  Reading,
+  Placing,
+  Lights,
+  RayTracer,
+  Rendering,
+  Finishing,
+  Writing,
+  Denoising
+};
+inline constexpr size_t kMemorySteps = 9;
 /// "building the ray tracer", and the word that JSON has.
 const char* memory_step_text(MemoryStep step);
 const char* memory_step_key(MemoryStep step);

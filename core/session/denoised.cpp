@@ -1,5 +1,7 @@
 #include "core/session/denoised.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -33,6 +35,8 @@ std::string denoised_name(const std::string& file) {
 }  // namespace
 
 DenoisedPicture denoise(const Denoiser& denoiser, const RenderResult& result, int threads) {
+  // What the film had: the heap keeps it, and what comes now is too large to be put there.
+  ::malloc_trim(0);
   const std::vector<float> albedo = pixels_of(result.aovs, kAlbedo), normal = pixels_of(result.aovs, kNormal);
   const Picture& noisy = result.picture;
   Denoiser::Output made = denoiser.denoise({noisy.width(), noisy.height(), noisy.rgb, albedo, normal, threads});

@@ -17,7 +17,8 @@ constexpr double kLater = 4 << 20;
 
 MemoryPlan plan_memory(const PlannedWorld& world, const MemoryRequest& request) {
   MemoryPlan memory;
-  memory.add_from(MemoryStep::Reading, MemoryUse::Program, static_cast<double>(resident_memory()) + kLater);
+  const double has = request.resident > 0 ? request.resident : static_cast<double>(resident_memory());
+  memory.add_from(MemoryStep::Materials, MemoryUse::Program, has + kLater);
   const int threads = request.film.threads > 0 ? request.film.threads : tbb::this_task_arena::max_concurrency();
   plan_scene_memory(world.bound, world.plan, threads, static_cast<double>(request.texture_bytes), memory);
   plan_film_memory(world.bound, request.film, memory);
@@ -28,7 +29,8 @@ void fit_textures(MemoryPlan& memory, uint64_t limit) {
   const double most = static_cast<double>(limit), cap = memory.texture_cap();
   if (memory.total() <= most) return;
   double others = 0;
-  for (const MemoryStep step : {MemoryStep::Rendering, MemoryStep::Finishing, MemoryStep::Writing})
+  for (const MemoryStep step :
+       {MemoryStep::Rendering, MemoryStep::Finishing, MemoryStep::Writing, MemoryStep::Denoising})
     others = std::max(others, memory.total(step) - memory.of(MemoryUse::Textures, step));
   const double left = std::min(cap, most - others);
   if (left < memory.least_texture_cap()) return;

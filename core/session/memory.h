@@ -10,6 +10,7 @@ namespace whit {
 struct MemoryRequest {
   FilmNeed film{};                                      ///< Of what is rendered, and written.
   size_t texture_bytes = TextureStore::kDefaultMemory;  ///< As build_world() is told.
+  double resident = 0;  ///< What the process has but for what it gives back before; 0: all that it has.
 };
 
 /// The estimate: what the process has by now, and all that is still to come. Reads headers of files and nothing else.

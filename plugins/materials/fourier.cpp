@@ -6,13 +6,15 @@
 #include <string>
 
 #include "core/base/limits.h"
+#include "core/base/mapped_file.h"
+#include "core/plugin/memory_need.h"
 #include "core/plugin/registry.h"
 #include "plugins/shared/material_inputs.h"
 
 namespace whit {
 namespace {
 
-struct Fourier : Material {
+struct Fourier : Material, NeedsMemory {
   FileName bsdffile;
   FourierTable table;
 
@@ -23,15 +25,28 @@ struct Fourier : Material {
 
   bool read(Diagnostics& diagnostics, SourcePos) override {
     if (bsdffile.empty()) return true;  // reported by check()
-    std::string problem;
-    if (const auto bytes = read_file(bsdffile.path, kBsdfBytes, problem)) {
-      problem = parse_fourier_table(*bytes, table);
-      if (problem.empty()) return true;
-      diagnostics.file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + problem);
-    } else {
-      diagnostics.file_error(bsdffile.where, "cannot read \"" + bsdffile.as_given + "\": " + problem);
+    const MappedFile file(bsdffile.path);
+    std::string problem = file.error();
+    if (problem.empty() && file.bytes().size() > kBsdfBytes.most) problem = more_bytes_than(kBsdfBytes);
+    if (problem.empty()) {
+      const std::string wrong = parse_fourier_table(file.bytes(), table);
+      problem = file.problem();
+      if (problem.empty() && wrong.empty()) return true;
+      if (problem.empty()) {
+        diagnostics.file_error(bsdffile.where, '"' + bsdffile.as_given + "\" " + wrong);
+        return false;
+      }
     }
+    diagnostics.file_error(bsdffile.where, "cannot read \"" + bsdffile.as_given + "\": " + problem);
     return false;
+  }
+
+  /// The numbers are kept as they are in the file, which is in memory beside them while they are read.
+  MemoryNeed memory_need(const MeshAttributes&) const override {
+    if (bsdffile.empty()) return {};
+    const MappedFile file(bsdffile.path);
+    const uint64_t bytes = file.bytes().size();
+    return bytes > kBsdfBytes.most ? MemoryNeed() : MemoryNeed{.table = bytes, .making = bytes};
   }
 
   void lobes(const ShadingBatch& s, LobeSet& out) const override {

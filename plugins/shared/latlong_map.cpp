@@ -130,8 +130,12 @@ size_t LatLongMap::bytes(int width, int height, LatLongRule rule) {
 
 size_t LatLongMap::bytes_to_build(int width, int height, int channels, LatLongRule rule) {
   const MapSize size(width, height, rule);
-  const size_t copy = is_resampled(width, height, rule) ? size.texels * static_cast<size_t>(channels) : 0;
-  return sizeof(float) * (copy + std::max(channels == 1 ? 3 * size.texels : 0, size.cells));
+  const size_t given = static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels);
+  // Each step gives back what it was made of: enlarging, going from one channel to three, and the cells.
+  const bool resampled = is_resampled(width, height, rule);
+  const size_t copy = resampled ? size.texels * static_cast<size_t>(channels) : 0, of = resampled ? copy : given;
+  const size_t most = std::max({given + copy, channels == 1 ? of + 3 * size.texels : 0, 3 * size.texels + size.cells});
+  return sizeof(float) * (most - std::min(most, given));
 }
 
 void LatLongMap::build_bands() {
@@ -259,20 +263,21 @@ void LatLongMap::sample(int n, const float* u, const float* v, const Vec3Lanes& 
 }
 
 MemoryNeed latlong_need(const std::string& path, LatLongRule rule) {
-  const std::optional<ImageInfo> info = path.empty() ? std::nullopt : quick_header(path);
-  if (!info) return {};
+  const std::optional<PictureHeader> header = path.empty() ? std::nullopt : quick_header(path);
+  if (!header) return {};
+  const ImageInfo* const info = &header->info;
   const int channels = info->rgb_channels()[0] == info->rgb_channels()[1] ? 1 : 3;
   MemoryNeed need;
-  need.light_map = LatLongMap::bytes(info->width, info->height, rule);
-  // What OpenImageIO takes with all its libraries, once it has been asked for.
-  constexpr uint64_t kOpenImageIO = uint64_t{80} << 20;
-  if (kind_of_picture(path) == PictureKind::Other) need.light_map += kOpenImageIO;
+  const size_t map = LatLongMap::bytes(info->width, info->height, rule);
   // The picture's numbers, which its texels may take the place of; of others there are both for a while.
   const size_t pixels = sizeof(float) * static_cast<size_t>(info->width) * static_cast<size_t>(info->height);
   const size_t texels = pixels * static_cast<size_t>(channels), picture = pixels * static_cast<size_t>(info->channels);
-  const size_t reading = picture + (info->channels == 3 ? 0 : texels);
+  const size_t reading = picture + std::max(header->reading, info->channels == 3 ? 0 : texels);
   const size_t all = std::max(reading, texels + LatLongMap::bytes_to_build(info->width, info->height, channels, rule));
-  need.making = all - std::min(all, static_cast<size_t>(need.light_map));
+  need.light_map = map, need.making = all - std::min(all, map);
+  // What OpenImageIO takes with all its libraries, once it has been asked for.
+  constexpr uint64_t kOpenImageIO = uint64_t{80} << 20;
+  if (kind_of_picture(path) == PictureKind::Other) need.light_map += kOpenImageIO;
   return need;
 }
 

@@ -1,6 +1,6 @@
 /* A library with the functions of OpenImageDenoise that whit calls. In place of the picture without noise it gives what the
  * environment's STAND_IN asks for: "color", "albedo" or "normal", as it came; with "error" it fails. VERSION_2 is defined
- * for the names that version 2 has. */
+ * for the names that version 2 has. With STAND_IN_TAKES_ALL in the environment it takes all memory that it is allowed. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdlib.h>
@@ -16,6 +16,7 @@ struct image {
 static struct {
   struct image images[kImages];
   bool hdr, committed;
+  int megabytes;
 } filter;
 static const char* problem;
 
@@ -54,6 +55,13 @@ void oidnExecuteFilter(void* which) {
   }
   if (!filter.hdr || !filter.committed) problem = "the filter is not set up";
   if (!strcmp(wanted(), "error")) problem = "no memory for the network";
+  if (getenv("STAND_IN_TAKES_ALL")) {
+    const size_t bytes = (size_t)filter.megabytes << 20;
+    char* scratch = malloc(bytes);
+    if (scratch) memset(scratch, 1, bytes);
+    else problem = "no memory for the network";
+    free(scratch);
+  }
 }
 
 static void set_bool(const char* name, bool value) {
@@ -73,6 +81,14 @@ void oidnSetFilter1b(void* which, const char* name, bool value) {
 #endif
   (void)which;
   set_bool(name, value);
+}
+#ifdef VERSION_2
+void oidnSetFilterInt(void* which, const char* name, int value) {
+#else
+void oidnSetFilter1i(void* which, const char* name, int value) {
+#endif
+  (void)which;
+  if (!strcmp(name, "maxMemoryMB")) filter.megabytes = value;
 }
 #ifdef VERSION_2
 int oidnGetDeviceInt(void* device, const char* name) {

@@ -178,7 +178,8 @@ class Memory(unittest.TestCase):
         if SANITIZED:
             self.skipTest("the sanitizers' memory")
         done = subprocess.run([os.path.join(SOURCES, "tools/check-memory"), "--whit", WHIT, "--small", "small", "ply", "inline",
-                               "subdivision", "gltf", "curves", "instances", "textures", "film", "aovs", "adaptive"],
+                               "subdivision", "gltf", "curves", "instances", "textures", "film", "aovs", "adaptive",
+                               "lights", "objects", "moving"],
                               capture_output=True, text=True, check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
@@ -206,6 +207,39 @@ class Memory(unittest.TestCase):
                 codes.add(done.returncode)
                 self.assertEqual([f for f in os.listdir(self.folder) if f.startswith(".")], [])
             self.assertIn(0, codes)
+
+    def test_lights_and_what_moves_are_refused(self):
+        # 1400 bytes for each light, 12 KB for each shape that moves, 4 KB for each object.
+        self.refused("lights", world('LightSource "point"\n' * 800000 + 'Shape "sphere"'), 'LightSource')
+        moves = "TransformTimes 0 1\n"
+        self.write("moves.pbrt", SMALL + moves + WORLD % (
+            "ActiveTransform EndTime\nRotate 20 0 0 1\nActiveTransform All\n" + 'Shape "sphere"\n' * 130000))
+        done = self.whit("moves.pbrt", "--max-memory", "1G")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertRegex(done.stderr, r"takes about \S+ [MG]iB of memory, more than 1024 MiB: .*instances")
+
+    def test_tables_are_refused(self):
+        # As large as its file, which is in memory beside it while it is read.
+        self.write("t.bsdf", b"SCATFUN\1", 700 * MIB)
+        self.assertAlmostEqual(self.refused("table", world('Material "fourier" "string bsdffile" "t.bsdf"\nShape "sphere"'),
+                                            'Material "fourier"'), 1420, delta=40)
+
+    def test_cost_and_watch_are_refused(self):
+        # cost has six films of that size at once, 48 bytes a pixel; a render, which has one, is not refused.
+        box = 'PixelFilter "box"\n'
+        self.write("a.pbrt", film_scene(2500, 2500, box))
+        done = self.whit("cost", "a.pbrt", "--time", "2s", "--max-memory", "1G")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertRegex(done.stderr, r"^a.pbrt:1:1: error: rendering takes about \d+ MiB of memory, more than 1024 MiB: ")
+        self.assertEqual(self.whit("a.pbrt", "--quiet", "--spp", "1", "--max-memory", "1G").returncode, 0)
+        self.write("b.pbrt", film_scene(6000, 6000, box))
+        done = self.whit("watch", "--terminal", "b.pbrt", "--max-memory", "1G")
+        self.assertEqual(done.returncode, 5, done.stderr)
+        self.assertRegex(done.stderr, r"b.pbrt:1:1: error: rendering takes about \d+ MiB of memory, more than 1024 MiB: ")
+        for command in ("cost", "watch"):
+            done = self.whit(command, "a.pbrt", "--max-memory", "much")
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn('--max-memory: "much" is no size above 0', done.stderr)
 
     def test_sizes_on_the_command_line(self):
         self.write("a.pbrt", world('Shape "sphere"'))

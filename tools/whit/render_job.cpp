@@ -159,7 +159,7 @@ class RenderJob {
     OutputPlan output = plan_output(output_request(world), planned.bound.film);
     if (settings_.denoiser && !output.said.has_errors()) {
       render_guides(output);
-      if (!settings_.output.unwritten) denoised_ = plan_denoised(output_request(world), output, planned.bound.film);
+      if (denoises()) denoised_ = plan_denoised(output_request(world), output, planned.bound.film);
       output.said.append(denoised_.said);
     }
     times_.output = planning_output.elapsed();
@@ -226,6 +226,7 @@ class RenderJob {
     film.blocks = settings_.target.any(), film.adaptive = !settings_.target.error.empty();
     film.linear = settings_.output.unwritten || is_linear_format(output.main_file);
     film.display = !film.linear || !output.display_file.empty();
+    film.denoise = denoises();
     return request;
   }
 
@@ -439,13 +440,16 @@ class RenderJob {
     if (result.statistics.invalid_samples > 0) report_invalid(result.statistics);
     const RenderOutcome outcome{*built.scene, result,         output,         *built.textures,
                                 times_,       unread_.size(), parsed_memory_, memory_estimate_};
+    const int code = denoises() && result.complete ? denoise(result) : kDone;
     stats_.add(settings_, path_, outcome);
     if (!settings_.quiet) {
       summarise(outcome, settings_.stats);
       if (!passed_.empty()) name_what_was_passed();
     }
-    return settings_.denoiser && result.complete && !settings_.output.unwritten ? denoise(result) : kDone;
+    return code;
   }
+
+  bool denoises() const { return settings_.denoiser && !settings_.output.unwritten; }
 
   /// The second picture of --denoise.
   int denoise(const RenderResult& result) {
