@@ -34,7 +34,7 @@ class Study {
       : file_(file), number_(world), request_(request), clock_(request) {}
 
   CostStudy run() {
-    world_ = open_world(file_, number_, {}, request_, clock_);
+    world_ = open_world(file_, number_, {}, request_, 0, clock_);
     out_.said = world_.said;
     if (out_.said.has_errors() || !world_.built.scene) return std::move(out_);
     describe();

@@ -102,7 +102,7 @@ class Comparing {
   /// memory. What is no further apart is not resolved.
   void measure_bias_of_place() {
     clock_.doing("the scene beside itself");
-    CostWorld other = open_world(file_, world_, {}, request_, clock_);
+    CostWorld other = open_world(file_, world_, {}, request_, pairs_, clock_);
     if (!other.usable) return;
     const CostPairs pairs = render_pairs(base_, other, request_, clock_, samples_, pairs_);
     if (pairs.size() < kFewestPairs) return;
@@ -114,7 +114,7 @@ class Comparing {
   bool compare(const CostAlternative& alternative) {
     const Stopwatch watch;
     clock_.doing(alternative.variant.knob + " " + alternative.variant.value);
-    CostWorld other = open_world(file_, world_, alternative.variant, request_, clock_);
+    CostWorld other = open_world(file_, world_, alternative.variant, request_, pairs_, clock_);
     if (other.said.has_errors()) {
       out_.not_known.push_back(fmt::format("{} {} cannot be rendered: {}.", alternative.variant.knob,
                                            alternative.variant.value, other.said.all().front().message));

@@ -10,7 +10,8 @@
 namespace whit {
 namespace {
 
-constexpr int kReplicates = 8, kFewReplicates = 4;
+/// With fewer, where no level fits otherwise.
+constexpr int kFewReplicates = 4;
 /// So many times the samples of a level are in its reference.
 constexpr int kReferenceTimes = 16;
 constexpr uint32_t kReferenceSeed = 1000;
@@ -18,8 +19,6 @@ constexpr uint32_t kReferenceSeed = 1000;
 constexpr double kMargin = 1.1;
 /// So many times the time that all processors would take is believed.
 constexpr double kBusy = 1.5;
-/// Pictures of all replicates and levels are kept: beyond this many pixels there are fewer of them.
-constexpr int64_t kManyPixels = 4'000'000;
 
 Picture mean_of(const Picture& a, const Picture& b) {
   Picture mean = a;
@@ -35,8 +34,7 @@ class LevelStudy {
     // One look at a machine that others use as well may take long by chance: what the processor did for it says more.
     const int threads = request.threads > 0 ? request.threads : tbb::this_task_arena::max_concurrency();
     out_.per_sample.wall = std::min(out_.per_sample.wall, kBusy * out_.per_sample.cpu / threads);
-    const Vec2i size = world.scene().camera().film.resolution;
-    out_.replicates = int64_t{size.x} * size.y > kManyPixels ? kFewReplicates : kReplicates;
+    out_.replicates = replicates_of(world.scene().camera().film.resolution);
   }
 
   CostLevels run() {

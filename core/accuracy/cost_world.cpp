@@ -5,7 +5,9 @@
 
 #include <filesystem>
 
+#include "core/plugin/memory_limit.h"
 #include "core/session/denoised.h"
+#include "core/session/memory.h"
 
 namespace whit {
 namespace {
@@ -47,6 +49,20 @@ OutputPlan plan_hidden_output(const Bound<Film>& film, const std::string& folder
   return plan_output(request, film);
 }
 
+MemoryPlan memory_of(const PlannedWorld& planned, const CostVariant& variant, const CostRequest& request, int pairs) {
+  // Where time ends the first level of a large picture, there is no fourth.
+  constexpr int kLevels = 4, kHalves = 2;
+  const int replicates = replicates_of(planned.bound.film.plugin->resolution());
+  MemoryRequest wanted;
+  FilmNeed& film = wanted.film;
+  film.threads = request.threads;
+  film.films = pairs > 0 ? 2 : replicates + kHalves;
+  film.kept_pictures = pairs > 0 ? 2 * pairs : kLevels * replicates;
+  film.denoise = variant.denoiser != nullptr;
+  if (film.denoise) film.aovs = {"albedo", "N"};
+  return plan_memory(planned, wanted);
+}
+
 /// One sample per pixel, with all that a render has around it.
 struct FirstLook {
   Elapsed samples, around;
@@ -71,6 +87,12 @@ FirstLook look(CostWorld& world, bool write) {
 
 }  // namespace
 
+int replicates_of(Vec2i resolution) {
+  constexpr int kMany = 8, kFew = 4;
+  constexpr int64_t kManyPixels = 4'000'000;
+  return int64_t{resolution.x} * resolution.y > kManyPixels ? kFew : kMany;
+}
+
 StatementPlace statement_place(const Sources& sources) {
   return [&sources](SourcePos where) {
     const SourcePlace p = sources.place(where);
@@ -78,7 +100,7 @@ StatementPlace statement_place(const Sources& sources) {
   };
 }
 
-CostWorld open_world(ParsedFile& file, size_t number, const CostVariant& variant, const CostRequest& request,
+CostWorld open_world(ParsedFile& file, size_t number, const CostVariant& variant, const CostRequest& request, int pairs,
                      CostClock& clock) {
   CostWorld world;
   world.description = &file.worlds[number];
@@ -98,7 +120,11 @@ CostWorld open_world(ParsedFile& file, size_t number, const CostVariant& variant
   BuildOptions options;
   options.seed = request.seed;
   options.robust_traversal = variant.robust;
-  world.built = build_world(std::move(planned), options);
+  MemoryPlan memory = memory_of(planned, variant, request, pairs);
+  fit_textures(memory, memory_limit());
+  world.said.append(memory_problem(memory, memory_limit()));
+  if (world.said.has_errors()) return world;
+  world.built = build_world(std::move(planned), options, static_cast<size_t>(memory.texture_cap()));
   world.said.append(world.built.said);
   world.fixed = planning.elapsed();
   if (world.said.has_errors() || !world.built.scene) return world;

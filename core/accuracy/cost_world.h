@@ -44,8 +44,13 @@ struct CostWorld {
   const Scene& scene() const { return *built.scene; }
 };
 
-/// Plans, builds and renders one sample twice: what the first takes more is what is done at first sight.
-CostWorld open_world(ParsedFile& file, size_t world, const CostVariant& variant, const CostRequest& request,
+/// Pictures of each level, of seeds of their own: fewer where they are large, for those of all levels are kept.
+int replicates_of(Vec2i resolution);
+
+/// Plans, builds and renders one sample twice: what the first takes more is what is done at first sight. A world is not
+/// built, which is an error in `said`, where there is not the memory for it and what will be rendered of it: `pairs`
+/// pictures of it and of another world each; 0 for levels.
+CostWorld open_world(ParsedFile& file, size_t world, const CostVariant& variant, const CostRequest& request, int pairs,
                      CostClock& clock);
 
 /// Several pictures of one world, each of a seed of its own, that grow.

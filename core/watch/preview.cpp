@@ -18,11 +18,13 @@
 #include <thread>
 #include <utility>
 
+#include "core/plugin/memory_limit.h"
 #include "core/plugin/registry.h"
 #include "core/render/film_render.h"
 #include "core/render/look.h"
 #include "core/scene/problems.h"
 #include "core/session/files.h"
+#include "core/session/memory.h"
 #include "core/watch/effect_costs.h"
 #include "core/watch/halves.h"
 #include "core/watch/watched_files.h"
@@ -101,8 +103,8 @@ std::vector<PreviewProblem> problems_of(const Sources& sources, const Diagnostic
   std::vector<PreviewProblem> out;
   for (const Diagnostic& d : all) {
     if (out.size() == kProblemsShown) break;
-    out.push_back(
-        {is_error(d), place_of(sources, d.where), d.message, d.remedy, d.where.known() ? excerpt_of(sources, d) : ""});
+    out.push_back({is_error(d), place_of(sources, d.where), d.message, d.remedy,
+                   d.where.known() ? excerpt_of(sources, d) : "", d.name == kLimitHit});
   }
   left_out = 0;
   for (size_t i = out.size(); i < all.size(); ++i) left_out += stands_for(all[i]);
@@ -247,14 +249,15 @@ struct Preview::Impl {
   template <class Work>
   bool guarded(const Work& work) {
     std::string what;
+    bool is_limit = false;
     try {
       work();
       return true;
-    } catch (const std::bad_alloc&) { what = "there is not enough memory"; } catch (const std::exception& e) {
-      what = e.what();
-    }
+    } catch (const std::bad_alloc&) {
+      what = "there is not enough memory", is_limit = true;
+    } catch (const std::exception& e) { what = e.what(); }
     publish([&](PreviewState& s) {
-      s.problems = {{true, {}, "this cannot be shown: " + what, "", ""}};
+      s.problems = {{true, {}, "this cannot be shown: " + what, "", "", is_limit}};
       s.problems_left_out = 0, s.stale = true, s.phase = PreviewPhase::Done;
     });
     std::this_thread::sleep_for(std::chrono::milliseconds(100));  // It may happen again at once.
@@ -281,9 +284,11 @@ struct Preview::Impl {
     said.append(planned.said);
     if (planned.said.has_errors() || !planned.bound.film.plugin) return refuse(said);
     said.append(find_surprises(description, planned.plan));
+    size_t texture_bytes = 0;
+    if (!make_room(planned, texture_bytes, said)) return refuse(said);
     auto made = std::make_shared<World>();
     made->file = file;
-    made->built = rebuild(std::move(planned));
+    made->built = rebuild(std::move(planned), texture_bytes);
     said.append(made->built.said);
     if (said.has_errors() || !made->built.scene) return refuse(said);
     made->base = description.transforms[static_cast<size_t>(description.camera_transform)].start;
@@ -298,11 +303,50 @@ struct Preview::Impl {
     return false;
   }
 
+  /// What a preview of a world is going to take of memory; `resident` as MemoryRequest::resident.
+  MemoryPlan memory_of(const PlannedWorld& planned, double resident) const {
+    // Pictures as half floats, and one more in floats while it is made and shown.
+    constexpr double kKept = 0.5 * kPicturesKept + 1;
+    MemoryRequest wanted{.texture_bytes = request.texture_bytes, .resident = resident};
+    FilmNeed& need = wanted.film;
+    need.threads = request.threads, need.quick = request.build.quick;
+    need.linear = need.display = false, need.kept_pictures = kKept;
+    MemoryPlan memory = plan_memory(planned, wanted);
+    fit_textures(memory, memory_limit());
+    return memory;
+  }
+
+  /// Whether there is memory for what was planned, beside the world that there is; else without it, which then goes before.
+  bool make_room(const PlannedWorld& planned, size_t& texture_bytes, Diagnostics& said) {
+    const auto limit = static_cast<double>(memory_limit()), now = static_cast<double>(resident_memory());
+    MemoryPlan memory = memory_of(planned, now);
+    if (memory.total() > limit && world) {
+      memory = memory_of(planned, std::max(memory_before, now - memory_taken));
+      if (memory.total() <= limit) let_go();
+    }
+    said.append(memory_problem(memory, memory_limit()));
+    texture_bytes = static_cast<size_t>(memory.texture_cap());
+    if (memory.total() > limit) return false;
+    if (!world) memory_before = now;
+    memory_taken = memory.total(MemoryStep::Rendering) - memory.of(MemoryUse::Program, MemoryStep::Rendering);
+    return true;
+  }
+
+  /// The world goes, its picture stays.
+  void let_go() {
+    film.reset();
+    unfinished = false;
+    const std::lock_guard lock(mutex);
+    world.reset();
+    kept.geometry.clear();
+    kept.textures.reset();
+  }
+
   /// Meshes and textures that did not change stay what they are, and nobody looks at them meanwhile.
-  BuiltWorld rebuild(PlannedWorld planned) {
+  BuiltWorld rebuild(PlannedWorld planned, size_t texture_bytes) {
     std::unique_lock<std::timed_mutex> lock;
     if (world) lock = std::unique_lock(world->changing);
-    return rebuild_world(std::move(planned), request.build, kept, request.texture_bytes);
+    return rebuild_world(std::move(planned), request.build, kept, texture_bytes);
   }
 
   void read_file() {
@@ -550,7 +594,9 @@ struct Preview::Impl {
       plan.off.add(e);
       PlannedWorld planned = plan_world(world->description(), world->sources(), plan);
       if (planned.said.has_errors()) return;
-      const BuiltWorld without = rebuild(std::move(planned));
+      const MemoryPlan memory = memory_of(planned, 0);
+      if (memory.total() > static_cast<double>(memory_limit())) return;
+      const BuiltWorld without = rebuild(std::move(planned), static_cast<size_t>(memory.texture_cap()));
       if (!without.scene) return;
       const std::optional<double> share = study.share_without(without, request.threads);
       if (!share) return;
@@ -584,6 +630,8 @@ struct Preview::Impl {
   double film_seconds = 0;
   bool unfinished = false;  ///< The world's picture.
   double rate = 0;          ///< Samples a second.
+  /// Bytes of the process before there was a world, and what the world was thought to take at most.
+  double memory_before = 0, memory_taken = 0;
   Clock::time_point changed_at, last_picture;
   uint64_t pictures_made = 0;
 

@@ -50,6 +50,7 @@ struct PreviewProblem {
   bool is_error = true;  ///< Or a mistake beyond doubt that is rendered past.
   PlaceInFile where;
   std::string message, remedy, excerpt;
+  bool is_limit = false;  ///< A limit was hit (kLimitHit): the scene may be right.
 };
 
 struct PreviewEffect {

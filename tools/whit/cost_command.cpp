@@ -12,6 +12,7 @@
 #include "core/accuracy/report.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/load.h"
+#include "tools/whit/memory_flags.h"
 #include "tools/whit/model_flags.h"
 #include "tools/whit/quantities.h"
 #include "tools/whit/stop_signals.h"
@@ -29,6 +30,7 @@ struct CostFlags {
   int threads = 0;
   uint32_t seed = 0;
   ModelFlags model;
+  MemoryFlags memory;
 };
 
 /// "" or what is wrong with the flags.
@@ -126,18 +128,21 @@ int cost_command(const Arguments& args) {
        {"--quick", &flags.quick, "Samples alone: no other settings, no effects"},
        {"--all-samplers", &flags.all_samplers, "Every sampler, not only the scene's, sobol and random"},
        {"--seed", &flags.seed, "Seed of the first of the pictures that are compared"},
-       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}}}};
+       {"--nthreads", &flags.threads, "Threads; 0 is one per core", {.least = 0, .most = 4096}},
+       memory_flag(flags.memory)}};
   add_model_flags(command, flags.model, false);
   int code = kDone;
   if (!parse_arguments(command, args, code)) return code;
   std::string problem = usage_problem(flags);
   if (problem.empty()) problem = usage_problem(flags.model, flags.scene);
+  if (problem.empty()) problem = usage_problem(flags.memory);
   code = kUsage;
   if (problem.empty()) problem = file_problem(flags), code = kFileError;
   if (!problem.empty()) {
     say("whit cost: " + problem);
     return code;
   }
+  set_memory_limit(flags.memory);
   std::unique_ptr<tbb::global_control> threads;
   if (flags.threads > 0) {
     threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

@@ -10,10 +10,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/plugin/memory_limit.h"
 #include "parser/format.h"
 #include "tools/whit/load.h"
-#include "tools/whit/quantities.h"
 #include "tools/whit/render_flags.h"
 #include "tools/whit/render_job.h"
 #include "tools/whit/terminal.h"
@@ -93,7 +91,7 @@ int render_command(const Arguments& args) {
 }
 
 int render_scenes(const RenderSettings& settings, BeforeScene before) {
-  if (!settings.max_memory.empty()) set_memory_limit(size_of(settings.max_memory));
+  set_memory_limit(settings.memory);
   std::unique_ptr<tbb::global_control> threads;
   if (settings.threads > 0) {
     threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,

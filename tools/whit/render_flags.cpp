@@ -191,8 +191,7 @@ std::vector<Flag> more_flags_of(RenderSettings& s) {
        &s.texture_memory,
        "MiB of decoded textures at most; what is more goes to a file in $TMPDIR or /var/tmp",
        {.least = 1, .most = 1e9}},
-      {"--max-memory", &s.max_memory,
-       "Memory at most: 512M, 1G; what takes more is refused before (default: 90 % of what the machine has)"},
+      memory_flag(s.memory),
       {"--quick", &s.quick, "A quarter of the resolution each way, one sample per pixel"},
       {"--quiet", &s.quiet, "No progress and no summary; problems are still reported"},
       {"--strict", &s.strict, "Warnings are errors"},
@@ -297,8 +296,7 @@ std::string usage_problem(const RenderSettings& s) {
   if (s.output.unwritten && s.passes.pass.empty() && !s.checkpoint.any() && s.display_server.empty() &&
       s.stats_file.empty() && s.target.json.empty())
     return "--outfile none: nothing would come of it; name a --checkpoint, a --display-server or --stats FILE.json";
-  if (!s.max_memory.empty() && size_of(s.max_memory) == 0)
-    return fmt::format("--max-memory: \"{}\" is no size above 0; write 512M, 1G or bytes", s.max_memory);
+  if (std::string problem = usage_problem(s.memory); !problem.empty()) return problem;
   if (!s.debug_pixel.empty() && numbers_of(s.debug_pixel).size() < 2) {
     return "--debug-pixel needs x,y or x,y,sample, like 320,240,7";
   }

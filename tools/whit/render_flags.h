@@ -12,6 +12,7 @@
 #include "core/session/output.h"
 #include "tools/whit/commands.h"
 #include "tools/whit/effect_flags.h"
+#include "tools/whit/memory_flags.h"
 #include "tools/whit/model_flags.h"
 #include "tools/whit/sandbox.h"
 
@@ -62,7 +63,7 @@ struct RenderSettings {
   int threads = 0, spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
   double texture_memory = 1024;
-  std::string max_memory;  ///< As given: size_of(); "" for nine tenths of what there is.
+  MemoryFlags memory;
   bool quick = false, quiet = false, strict = false, keep_going = false, stats = false, verbose = false;
   std::string stats_file;  ///< For figures as JSON; "-" is standard output, "" none.
   bool cat = false, toply = false;

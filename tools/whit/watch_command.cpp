@@ -18,6 +18,7 @@
 #include "core/watch/watch_server.h"
 #include "tools/whit/command_line.h"
 #include "tools/whit/effect_flags.h"
+#include "tools/whit/memory_flags.h"
 #include "tools/whit/model_flags.h"
 #include "tools/whit/sandbox.h"
 #include "tools/whit/terminal.h"
@@ -36,6 +37,7 @@ struct WatchFlags {
   EffectFlags effects;
   ModelFlags model;
   SandboxFlags sandbox;
+  MemoryFlags memory;
 };
 
 bool read_flags(const Arguments& given, WatchFlags& flags, int& code) {
@@ -58,7 +60,8 @@ bool read_flags(const Arguments& given, WatchFlags& flags, int& code) {
        {"--quick", &flags.quick, "A quarter of the resolution, one sample"},
        {"--view", &flags.view, "Of the terminal's picture, and what the page shows at first; as for 'whit render'"},
        {"--ocio", &flags.ocio, "An OpenColorIO configuration"},
-       {"--texture-memory", &flags.texture_memory, "MiB for textures", {.least = 1, .most = 1e9}}}};
+       {"--texture-memory", &flags.texture_memory, "MiB for textures", {.least = 1, .most = 1e9}},
+       memory_flag(flags.memory)}};
   add_effect_flags(command, flags.effects);
   add_model_flags(command, flags.model);
   add_sandbox_flags(command, flags.sandbox);
@@ -78,6 +81,7 @@ std::string problem_of(const WatchFlags& flags) {
   if (flags.sandbox.on && flags.open)
     return "--open starts a browser, which --sandbox forbids; open the address yourself";
   if (std::string problem = usage_problem(flags.sandbox); !problem.empty()) return problem;
+  if (std::string problem = usage_problem(flags.memory); !problem.empty()) return problem;
   return usage_problem(flags.model, flags.scene);
 }
 
@@ -187,6 +191,7 @@ int watch_command(const Arguments& args) {
     say("whit watch: " + problem);
     return kFileError;
   }
+  set_memory_limit(flags.memory);
   const EndSignals signals;
   Preview preview(request_of(flags));
   if (flags.terminal) {

@@ -98,7 +98,8 @@ int draw_once(Preview& preview, const WatchTerminal& how, const DisplayTransform
     if (how.ended()) return kDone;
     if (state.stale) {
       say(problems_text(state, 50));
-      return kSceneError;
+      const auto is_limit = [](const PreviewProblem& p) { return p.is_limit; };
+      return std::any_of(state.problems.begin(), state.problems.end(), is_limit) ? kLimit : kSceneError;
     }
     if (state.phase != PreviewPhase::Done || !state.picture || !state.picture->done) continue;
     put(drawn(*state.picture, display, graphics_here(how.graphics), {}, 40));
