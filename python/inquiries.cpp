@@ -28,13 +28,14 @@ void refuse_unknown(const char* argument, const std::vector<std::string>& names)
   }
 }
 
-py::list check(const SceneSource& source, const std::vector<std::string>& allow, const std::vector<std::string>& also) {
+py::list check(const SceneSource& source, const py::dict& model, const std::vector<std::string>& allow,
+               const std::vector<std::string>& also) {
   refuse_unknown("allow", allow);
   refuse_unknown("also", also);
+  ReadOptions options = read_options(model_wish(model), source);
+  options.read_unplaced = true;
   return to_python(wait_for(
       [&](Attention& attention) {
-        ReadOptions options;
-        options.read_unplaced = true;
         const ParsedFile file = read_source(source, options);
         CheckOptions wanted;
         wanted.allowed = allow, wanted.asked_for = also;
@@ -44,9 +45,9 @@ py::list check(const SceneSource& source, const std::vector<std::string>& allow,
       py::none()));
 }
 
-Json explain_worlds(const SceneSource& source, const PlanWish& wish, bool memory) {
+Json explain_worlds(const SceneSource& source, const ReadOptions& read, const PlanWish& wish, bool memory) {
   const PlanOptions options = plan_options(wish);
-  ParsedFile file = read_source(source);
+  ParsedFile file = read_source(source, read);
   const std::string problem = apply_overrides(wish, file);
   const Sources& sources = *file.sources;
   Diagnostics all = file.said;
@@ -68,15 +69,17 @@ Json explain_worlds(const SceneSource& source, const PlanWish& wish, bool memory
 
 py::object explain(const SceneSource& source, const py::dict& plan, bool memory) {
   const PlanWish wish = plan_wish(plan);
-  return to_python(wait_for([&](Attention&) { return explain_worlds(source, wish, memory); }, py::none()));
+  const ReadOptions read = read_options(model_wish(plan), source);
+  return to_python(wait_for([&](Attention&) { return explain_worlds(source, read, wish, memory); }, py::none()));
 }
 
 struct CostTexts {
   std::string json, html;
 };
 
-CostTexts study(const SceneSource& source, CostRequest request, bool page, Attention& attention) {
-  ParsedFile file = read_source(source);
+CostTexts study(const SceneSource& source, const ReadOptions& read, CostRequest request, bool page,
+                Attention& attention) {
+  ParsedFile file = read_source(source, read);
   if (file.said.has_errors() || file.worlds.empty()) {
     const Diagnostics all = all_problems(file);
     if (!all.has_errors()) throw Failure(FailureKind::Scene, source.name() + ": there is no WorldBegin in it");
@@ -102,8 +105,9 @@ py::tuple cost(const SceneSource& source, const py::dict& options, const py::obj
   take(options, "seconds", request.seconds), take(options, "quick", request.quick);
   take(options, "all_samplers", request.all_samplers), take(options, "threads", request.threads);
   take(options, "seed", request.seed), take(options, "page", page);
+  const ReadOptions read = read_options(model_wish(options), source);
   const CostTexts texts =
-      wait_for([&](Attention& attention) { return study(source, request, page, attention); }, progress);
+      wait_for([&](Attention& attention) { return study(source, read, request, page, attention); }, progress);
   return py::make_tuple(text(texts.json), text(texts.html));
 }
 

@@ -10,6 +10,7 @@
 #include "core/scene/problems.h"
 #include "core/session/files.h"
 #include "core/session/memory.h"
+#include "core/session/models.h"
 #include "python/version.h"
 
 namespace whit::python {
@@ -73,6 +74,22 @@ ParsedFile read_source(const SceneSource& source, const ReadOptions& options) {
   return source.text ? read_scene_text(source.name(), *source.text, options) : read_scene_file(source.path, options);
 }
 
+ReadOptions read_options(const ModelWish& wish, const SceneSource& source) {
+  const std::pair<const char*, bool> given[] = {{"model_scene", !wish.scene.empty()},
+                                                {"model_camera", !wish.camera.empty()},
+                                                {"model_time", wish.time.has_value()},
+                                                {"model_variant", !wish.variant.empty()}};
+  for (const auto& [argument, is_given] : given) {
+    if (is_given && (source.text || !is_model_file(source.path)))
+      throw wrong(fmt::format("{} is of glTF models, and {} is none; a scene says it by its own statements", argument,
+                              source.text ? "a text" : '"' + source.path + '"'));
+  }
+  ReadOptions options;
+  options.model.scene = wish.scene, options.model.camera = wish.camera, options.model.variant = wish.variant;
+  options.model.time = wish.time, options.allow_outside = wish.allow_outside;
+  return options;
+}
+
 PlanOptions plan_options(const PlanWish& wish) {
   PlanOptions options;
   if (wish.without && wish.only) throw wrong("without and only exclude each other");
@@ -88,9 +105,7 @@ std::string apply_overrides(const PlanWish& wish, ParsedFile& file) {
 
 KeptScene::KeptScene(const SceneSource& source, const SceneWish& wish, const RenderWish& first)
     : source_(source), wish_(wish) {
-  ReadOptions options;
-  options.allow_outside = wish.allow_outside;
-  file_ = read_source(source, options);
+  file_ = read_source(source, read_options(wish.model, source));
   times_.parse = file_.elapsed;
   parsed_memory_ = static_cast<double>(resident_memory());
   const std::string problem = apply_overrides(wish, file_);

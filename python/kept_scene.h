@@ -40,12 +40,22 @@ PlanOptions plan_options(const PlanWish& wish);
 /// Puts the overrides into a file; throws Failure for names that nobody has. "" or what the file has no place for.
 std::string apply_overrides(const PlanWish& wish, ParsedFile& file);
 
+/// What of a glTF model is shown.
+struct ModelWish {
+  std::string scene, camera, variant;  ///< By name or number; "" for the model's own.
+  std::optional<double> time;          ///< Seconds into its animations.
+  bool allow_outside = false;
+};
+/// How a source is read. Throws Failure where something of a model is chosen, and the source is none.
+ReadOptions read_options(const ModelWish& wish, const SceneSource& source);
+
 /// What a scene is built with.
 struct SceneWish : PlanWish {
   int world = 0;  ///< Of the file's, by number.
   int spp = 0, footprint_spp = 0;
   uint32_t seed = 0;
-  bool quick = false, strict = false, keep_going = false, fast_traversal = false, allow_outside = false;
+  bool quick = false, strict = false, keep_going = false, fast_traversal = false;
+  ModelWish model;
   double texture_memory = 1024;  ///< MiB
   bool extending = false;        ///< With a sampler that goes on beyond its number, for targets.
 };

@@ -8,5 +8,6 @@ namespace whit::python {
 
 /// Of a dict with the arguments' names.
 PlanWish plan_wish(const py::dict& from);
+ModelWish model_wish(const py::dict& from);
 
 }  // namespace whit::python

@@ -4,6 +4,7 @@
 
 #include "python/convert.h"
 #include "python/kept_scene.h"
+#include "python/plan_wish.h"
 
 namespace whit::python {
 namespace {
@@ -20,20 +21,20 @@ void take_plan(const py::dict& from, PlanWish& to) {
   if (from.contains("only") && !from["only"].is_none()) to.only = from["only"].cast<std::vector<std::string>>();
 }
 
+template <class T>
+void take_optional(const py::dict& from, const char* key, std::optional<T>& to) {
+  if (from.contains(key) && !from[key].is_none()) to = from[key].cast<T>();
+}
+
 SceneWish scene_wish(const py::dict& from) {
   SceneWish to;
   take_plan(from, to);
   take(from, "world", to.world), take(from, "spp", to.spp), take(from, "footprint_spp", to.footprint_spp);
   take(from, "seed", to.seed), take(from, "quick", to.quick), take(from, "strict", to.strict);
   take(from, "keep_going", to.keep_going), take(from, "texture_memory", to.texture_memory);
-  take(from, "allow_outside", to.allow_outside), take(from, "extending", to.extending);
-  take(from, "fast_traversal", to.fast_traversal);
+  take(from, "extending", to.extending), take(from, "fast_traversal", to.fast_traversal);
+  to.model = model_wish(from);
   return to;
-}
-
-template <class T>
-void take_optional(const py::dict& from, const char* key, std::optional<T>& to) {
-  if (from.contains(key) && !from[key].is_none()) to = from[key].cast<T>();
 }
 
 RenderWish render_wish(const py::dict& from) {
@@ -78,6 +79,14 @@ PicturePtr render_kept(KeptScene& scene, const py::dict& wish, const py::object&
 PlanWish plan_wish(const py::dict& from) {
   PlanWish to;
   take_plan(from, to);
+  return to;
+}
+
+ModelWish model_wish(const py::dict& from) {
+  ModelWish to;
+  take(from, "model_scene", to.scene), take(from, "model_camera", to.camera), take(from, "model_variant", to.variant);
+  take_optional(from, "model_time", to.time);
+  take(from, "allow_outside", to.allow_outside);
   return to;
 }
 

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Any, Optional, Sequence, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 from whit import _whit
 from whit._errors import FileError, UsageError
 
 PathOrText = Union[str, "os.PathLike[str]"]
+NameOrNumber = Union[str, int, None]
 
 MOST_SAMPLES = 1 << 30
 
@@ -74,6 +75,26 @@ def names(name: str, given: Any) -> Optional[list[str]]:
         if not isinstance(one, str):
             raise UsageError(f"{name}: a name is needed, not {one!r}")
     return listed
+
+
+def name_or_number(name: str, given: Any) -> str:
+    """What something of a model is called, or its number; "" for None."""
+    if given is None:
+        return ""
+    if isinstance(given, str) and given:
+        return given
+    if isinstance(given, (str, bool)) or not hasattr(given, "__index__"):
+        raise UsageError(f"{name}: a name or a number is needed, not {given!r}")
+    return str(whole(name, given, 0, (1 << 31) - 1))
+
+
+def model(given: Mapping[str, Any]) -> dict[str, Any]:
+    """What of a glTF model is shown, checked: of the arguments that a function has."""
+    chosen: dict[str, Any] = {name: name_or_number(name, given.get(name))
+                              for name in ("model_scene", "model_camera", "model_variant")}
+    chosen["model_time"] = real("model_time", given.get("model_time"))
+    chosen["allow_outside"] = bool(given.get("allow_outside"))
+    return chosen
 
 
 def crop_window(crop: Optional[Sequence[float]]) -> Optional[list[float]]:

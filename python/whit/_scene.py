@@ -7,7 +7,7 @@ from typing import Any, Callable, Optional, Sequence
 import numpy as np
 
 from whit import _arguments, _whit
-from whit._arguments import PathOrText
+from whit._arguments import NameOrNumber, PathOrText
 from whit._errors import Diagnostic, UsageError, diagnostics_of
 from whit._picture import Picture
 
@@ -34,16 +34,17 @@ def _scene_arguments(given: dict[str, Any]) -> dict[str, Any]:
         "world": _arguments.whole("world", given["world"], 0, (1 << 31) - 1),
         "texture_memory": _arguments.real("texture_memory", given["texture_memory"], above=0),
         "quick": bool(given["quick"]), "strict": bool(given["strict"]), "keep_going": bool(given["keep_going"]),
-        "allow_outside": bool(given["allow_outside"]),
+        **_arguments.model(given),
     }
 
 
 def _flags(given: dict[str, Any]) -> list[tuple[str, Any]]:
     """The command's, in the order in which `render` has them."""
-    return [("--" + name.replace("_", "-"), given.get(name))
+    return [("--" + name.removeprefix("model_").replace("_", "-"), given.get(name))
             for name in ("spp", "seed", "crop", "integrator", "sampler", "maxdepth", "rrthreshold", "lights",
                          "texture_filter", "without", "only", "aov", "target_error", "confidence", "time_limit",
-                         "max_samples", "footprint_spp", "quick", "keep_going", "allow_outside")]
+                         "max_samples", "footprint_spp", "quick", "keep_going", "model_camera", "model_scene", "model_time",
+                         "model_variant", "allow_outside")]
 
 
 def _rendered(core: _whit.Picture, progress: Optional[Progress]) -> Picture:
@@ -61,7 +62,9 @@ def render(scene: PathOrText, *, spp: Optional[int] = None, seed: Optional[int] 
            rrthreshold: Optional[float] = None, lights: Optional[str] = None, texture_filter: Optional[str] = None,
            without: Optional[Sequence[str]] = None, only: Optional[Sequence[str]] = None,
            footprint_spp: Optional[int] = None, texture_memory: float = 1024, strict: bool = False,
-           keep_going: bool = False, allow_outside: bool = False, world: int = 0) -> Picture:
+           keep_going: bool = False, model_scene: NameOrNumber = None, model_camera: NameOrNumber = None,
+           model_time: Optional[float] = None, model_variant: NameOrNumber = None, allow_outside: bool = False,
+           world: int = 0) -> Picture:
     """Renders a scene: the picture that `whit SCENE` makes with the flags of the same names.
 
     >>> import whit
@@ -86,6 +89,9 @@ def render(scene: PathOrText, *, spp: Optional[int] = None, seed: Optional[int] 
     footprint_spp: samples that share a pixel's texture filtering; by default the scene's own number.
     texture_memory: MiB of decoded textures at most.
     strict: warnings are errors. keep_going: render what is usable despite errors.
+    model_scene, model_camera, model_variant: of a glTF model the scene, the camera and the variant of its materials, by
+        name or number from 0; by default the file's scene and its first camera, or one that frames it.
+    model_time: seconds into the model's animations; by default as the file has the nodes.
     allow_outside: models may name files outside of their folder.
     world: which of the pictures of a file with several WorldBegin, from 0.
 
@@ -135,7 +141,9 @@ class Scene:
                  texture_filter: Optional[str] = None, without: Optional[Sequence[str]] = None,
                  only: Optional[Sequence[str]] = None, footprint_spp: Optional[int] = None,
                  texture_memory: float = 1024, strict: bool = False, keep_going: bool = False,
-                 allow_outside: bool = False, world: int = 0) -> None:
+                 model_scene: NameOrNumber = None, model_camera: NameOrNumber = None,
+                 model_time: Optional[float] = None, model_variant: NameOrNumber = None, allow_outside: bool = False,
+                 world: int = 0) -> None:
         self._given = _scene_arguments(dict(locals()))
         self._scene = scene
         self._core = _whit.Scene(_arguments.source(scene), self._given)
