@@ -20,13 +20,20 @@ Pictures have the same bits as those of the command `whit` of the same build. Wh
 Errors are exceptions: `whit.SceneError`, `whit.FileError`, `whit.UsageError` and `whit.LimitError`, all of them
 `whit.Error`, with what there is to say of the scene in `diagnostics`.
 """
-from whit import _examples as _examples
-from whit._compare import Comparison, diff, measures
-from whit._errors import Diagnostic, Error, FileError, LimitError, SceneError, UsageError
-from whit._inquiries import aovs, check, cost, effects, explain
-from whit._picture import Picture
-from whit._scene import Scene, look_at, render
-from whit._whit import version as _version
+from whit import _processor
+
+# Before the extension module is loaded, which would end Python by an illegal instruction.
+if _processor.lacks():
+    raise ImportError(f"whit: this processor has no {', '.join(_processor.lacks())}, which this module is compiled for "
+                      f"({_processor.architecture()}); build it on this machine (docs/python.md)")
+
+from whit import _examples as _examples  # noqa: E402
+from whit._compare import Comparison, diff, measures  # noqa: E402
+from whit._errors import Diagnostic, Error, FileError, LimitError, SceneError, UsageError  # noqa: E402
+from whit._inquiries import aovs, check, cost, effects, explain  # noqa: E402
+from whit._picture import Picture  # noqa: E402
+from whit._scene import Scene, look_at, render  # noqa: E402
+from whit._whit import version as _version  # noqa: E402
 
 __version__ = _version()
 __all__ = ["Comparison", "Diagnostic", "Error", "FileError", "LimitError", "Picture", "Scene", "SceneError", "UsageError",

@@ -33,6 +33,7 @@ enum class InstructionSet : std::uint8_t {
   Avx512bitalg,
   Avx512vpopcntdq,
 };
+static constexpr unsigned kInstructionSets = 24;
 
 /// Its bit in a mask. Static, and not inline: processor_check.cpp must not call a copy of another file's.
 static constexpr std::uint32_t bit(InstructionSet set) { return 1U << static_cast<unsigned>(set); }
@@ -46,6 +47,9 @@ extern const char* const kArchitecture;
 
 /// Those that the processor has and the system lets programs use, as a mask.
 std::uint32_t processor_has();
+
+/// What people call one: "AVX2".
+const char* name_of(InstructionSet set);
 
 /// What --version says: "x86-64-v3 (AVX2)"; of a native build "native (AVX2), on a processor with AVX-512".
 std::string compiled_for();
