@@ -20,13 +20,13 @@ constexpr int kFewestPairs = 4;
 constexpr int kThumbnail = 160;
 
 std::vector<double> cpu_of(const std::vector<Elapsed>& spent) {
-  std::vector<double> out;
-  for (const Elapsed& one : spent) out.push_back(one.cpu);
+  std::vector<double> out(spent.size());
+  std::transform(spent.begin(), spent.end(), out.begin(), [](const Elapsed& one) { return one.cpu; });
   return out;
 }
 std::vector<double> wall_of(const std::vector<Elapsed>& spent) {
-  std::vector<double> out;
-  for (const Elapsed& one : spent) out.push_back(one.wall);
+  std::vector<double> out(spent.size());
+  std::transform(spent.begin(), spent.end(), out.begin(), [](const Elapsed& one) { return one.wall; });
   return out;
 }
 double mean_of(const std::vector<double>& values) {

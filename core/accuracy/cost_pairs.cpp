@@ -78,8 +78,9 @@ double share_changed(const std::vector<std::vector<float>>& differences, const s
 }
 
 std::vector<std::span<const float>> spans(const std::vector<Picture>& pictures) {
-  std::vector<std::span<const float>> out;
-  for (const Picture& picture : pictures) out.emplace_back(picture.rgb);
+  std::vector<std::span<const float>> out(pictures.size());
+  std::transform(pictures.begin(), pictures.end(), out.begin(),
+                 [](const Picture& picture) { return std::span(picture.rgb); });
   return out;
 }
 

@@ -1,9 +1,8 @@
 // Ctrl-C and its kin as a wish to stop, for work that has something to show for itself.
 #pragma once
 
-#include <signal.h>
-
 #include <array>
+#include <csignal>
 #include <string>
 
 namespace whit {
