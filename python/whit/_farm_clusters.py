@@ -63,3 +63,12 @@ def client_of(scheduler: str, cluster: str, options: str, workers: int) -> Itera
         made.scale(workers)
     with made, distributed.Client(made) as client:
         yield client
+
+
+def send_to_all(client: Any, things: list[bytes]) -> list[Any]:
+    """Futures of them, which all workers have: the only one that had them may be lost. Waits for a first worker, which may be
+    in a queue."""
+    if not things:
+        return []
+    client.wait_for_workers(1)
+    return client.scatter(things, hash=True, broadcast=True)

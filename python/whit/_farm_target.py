@@ -114,20 +114,15 @@ class Shares:
         self._folder, self._here = folder, here
         by_digest = {f.digest: f for f in job.files}
         self._digests = sorted(by_digest)
-        self._sent = client.scatter([job.read(by_digest[d]) for d in self._digests], hash=True) if self._digests else []
+        self._sent = clusters.send_to_all(client, [job.read(by_digest[d]) for d in self._digests])
         self._cost = ShareCost()
         os.makedirs(folder, exist_ok=True)
-
-    def _sent_to_all(self, file: str) -> Any:
-        """What is in it, at all workers: the only one that had it may be lost."""
-        with open(file, "rb") as f:
-            return self._client.scatter(f.read(), hash=False, broadcast=True)
 
     def render(self, said: dict[str, Any], give: Callable[[str], None], progress: Callable[[float], None]) -> Pass:
         """All of a pass; `give` is told of parts as they come, `progress` of the share of it that there is."""
         number, start = said["pass"], time.monotonic()
         count = count_of_shares(said["samples"], said["tiles"], self._workers, self._cost)
-        of_pass = said["file"] if self._here else self._sent_to_all(said["file"])
+        of_pass = said["file"] if self._here else clusters.send_to_all(self._client, [_bytes_of(said["file"])])[0]
         futures = {}
         for k in range(count):
             part = os.path.join(self._folder, f"{number}-{k + 1}.part")
@@ -176,6 +171,11 @@ def render_to_target(client: Any, job: Job, sent: Job, workers: int, threads: in
             warn(line.removeprefix("whit: "))
     tell(1)
     return TargetReport(passes, time.monotonic() - started, workers, outcome, code)
+
+
+def _bytes_of(file: str) -> bytes:
+    with open(file, "rb") as f:
+        return f.read()
 
 
 def _empty(folder: str) -> None:

@@ -53,7 +53,7 @@ def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int, files
     parts; none where they do not see this machine's folders."""
     digests = sorted({f.digest for f in job.files})
     by_digest = {f.digest: f for f in job.files}
-    sent = client.scatter([job.read(by_digest[d]) for d in digests], hash=True) if digests else []
+    sent = clusters.send_to_all(client, [job.read(by_digest[d]) for d in digests])
     keep = files or [""] * len(parts)
     return {client.submit(timed_part, job, part, threads, keep[i], digests, *sent, key=f"part-{i}-{os.getpid()}", priority=-i,
                           pure=False): i for i, part in enumerate(parts)}

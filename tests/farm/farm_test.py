@@ -141,13 +141,24 @@ class Farm(unittest.TestCase):
         with open(self.path("r.json"), encoding="utf-8") as f:
             self.assertEqual(json.load(f)["code"], 5)
 
-    def test_an_accuracy_with_files_that_travel(self):
+    def test_files_travel_to_workers_of_which_one_is_killed(self):
+        # Whichever it is, the files and the passes that it had are elsewhere too.
         import distributed
-        flags = ["--target-error", "4%"]
-        self.whole(*flags)
-        with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
-            farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=flags, scheduler=cluster.scheduler_address, workers=2)
-        self.expect_the_same()
+        for flags in (["--target-error", "2%"], ["--spp", "64"]):
+            self.whole(*flags)
+            with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, memory_limit=0,
+                                          silence_logs="CRITICAL") as cluster:
+                killed = []
+
+                def progress(share):
+                    if not killed:
+                        killed.append(cluster.workers[0].pid)
+                        os.kill(killed[0], signal.SIGKILL)
+
+                farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=flags, scheduler=cluster.scheduler_address,
+                            workers=2, model=TimeModel(0.01, 0.2), progress=progress)
+                self.assertEqual(len(killed), 1)
+            self.expect_the_same()
 
     def test_what_only_one_machine_can_do(self):
         for words, expected in ((["--", "--time-limit", "5s"], "--time-limit is of one machine's clock"),
