@@ -70,7 +70,8 @@ class FilmRender {
   void save_pass(ByteWriter& out) const;
   /// Makes a film on which nothing was rendered one share of such a pass of another: one of the same scene and options.
   /// go_on() takes those samples, and those alone. Shares are the tiles by turns, those with the most samples first, so
-  /// that all take alike: the `share`-th of `of`, from 0. False, and the film is of no use, when it is no such pass.
+  /// that all take alike: the `share`-th of `of`, from 0. Its result() has no pixels. False, and the film is of no use,
+  /// when it is no such pass.
   bool take_share(ByteReader& in, size_t share, size_t of);
   /// Adds what a film saved that took a share of this one's pass and all of its samples. The picture has the bits that
   /// go_on() would have given it, however many shares there are and in whatever order they come. False, and the film is
