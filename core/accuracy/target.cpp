@@ -408,10 +408,10 @@ std::optional<RenderedWorld> render_share(BuiltWorld& world, RenderOptions optio
   if (!film.take_share(in, share.number - 1, share.of)) return {};
   const bool usable = !options.keeper || options.keeper->begin(film);
   const bool complete = usable && film.go_on();
+  out.elapsed = watch.elapsed();
   if (options.keeper && usable) options.keeper->end(film, complete);
   out.result = film.result();
   out.result.complete = complete;
-  out.elapsed = watch.elapsed();
   out.said.append(world.textures->errors());
   return out;
 }

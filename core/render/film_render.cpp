@@ -449,6 +449,7 @@ struct FilmRender::Impl {
       if (r.unit >= grid.units() || r.have < p.have || r.have >= p.until || p.until != p.want) return false;
       work[task_of(r.unit)] += samples_left(r.unit, r.have, p);
     }
+    is_share = true;
     const std::vector<bool> mine = tasks_of_share(work, share, of);
     for (const UnitRest& r : units) {
       if (!mine[task_of(r.unit)]) continue;
@@ -579,7 +580,7 @@ struct FilmRender::Impl {
       have;  ///< and where it has come to: so many per pixel there are, where that is the first of all.
   std::vector<UnitPass> pass;
   std::string note;
-  bool restored = false;
+  bool restored = false, is_share = false;
   mutable std::mutex pass_lock;  ///< Of what a pass begins with; taken before a task's.
   /// Of all that a task's units have; between rounds nobody needs it, and it is as a state may be saved.
   mutable std::vector<std::mutex> task_locks;
@@ -680,8 +681,9 @@ RenderResult FilmRender::result() const {
   const auto start = std::chrono::steady_clock::now();
   const Impl& of = *impl_;
   RenderResult result;
-  result.picture = picture();
-  if (of.aovs.any()) {
+  // A share is no picture, and most of its film is memory that was never touched.
+  result.picture = of.is_share ? of.window : picture();
+  if (of.aovs.any() && !of.is_share) {
     const std::vector<double> weights = of.weights();
     of.on_threads([&] {
       result.aovs = resolve_aovs(of.scene, of.aovs, of.options.aovs.place, of.aov_tiles,

@@ -115,6 +115,7 @@ bool add_share(FilmRender& film, const std::string& state) {
 std::string share_of(const World& of, const RenderOptions& options, const std::string& pass, size_t share, size_t n) {
   FilmRender film(of.scene(), options);
   EXPECT_TRUE(take_share(film, pass, share, n) && film.go_on());
+  EXPECT_TRUE(film.result().picture.rgb.empty());
   return state_of(film);
 }
 
