@@ -50,8 +50,8 @@ OutputPlan plan_hidden_output(const Bound<Film>& film, const std::string& folder
 }
 
 MemoryPlan memory_of(const PlannedWorld& planned, const CostVariant& variant, const CostRequest& request, int pairs) {
-  // Where time ends the first level of a large picture, there is no fourth.
-  constexpr int kLevels = 4, kHalves = 2;
+  // Each takes four times the time of the one before: few have more.
+  constexpr int kLevels = 3, kHalves = 2;
   const int replicates = replicates_of(planned.bound.film.plugin->resolution());
   MemoryRequest wanted;
   FilmNeed& film = wanted.film;

@@ -328,6 +328,7 @@ def comments(folder):
     return scene(line * 700000 + 'Shape "sphere"\n', (4600, 4600), 'PixelFilter "box"\n')
 
 
+BALLS = 'Shape "sphere" "float radius" .036\n'
 BOX = 'PixelFilter "box"\n'
 AOVS = [x for name in ("N", "albedo", "Z", "variance") for x in ("--aov", name)]
 
@@ -344,8 +345,8 @@ SCENES = {
     "film_wider": (film(300, 300, 'PixelFilter "gaussian" "float xwidth" 110 "float ywidth" 110\n'), []),
     "film_aovs": (film(2600, 2600), AOVS),
     "film_variance": (film(3600, 3600), ["--aov", "variance"]),
-    "film_mattes": (film(3000, 3000, BOX, many_things(2500)), ["--aov", "shape", "--spp", "4"]),
-    "film_mattes3": (film(2300, 2300, "", many_things(2500)), ["--aov", "shape", "--aov", "material"]),
+    "film_mattes": (film(3000, 3000, BOX, many_things(2500, BALLS)), ["--aov", "shape", "--spp", "4"]),
+    "film_mattes3": (film(2300, 2300, "", many_things(2500, BALLS)), ["--aov", "shape", "--aov", "material"]),
     "film_parts": (film(3000, 3000), [x for n in ("emission", "direct", "indirect", "P") for x in ("--aov", n)]),
     "film_groups": (light_groups, ["--aov", "lightgroups"]),
     "film_adaptive": (film(2600, 2600), ["--target-error", "50%"]),
