@@ -105,8 +105,8 @@ Allowances::Allowances(const Sources& sources) {
 }
 
 void Allowances::read(uint32_t file, std::string_view text) {
-  // Nearly no file has one: whoever has none pays for one search.
-  if (text.find(kMark) == std::string_view::npos) return;
+  // Nearly no file has one: whoever has none pays for a search or two. What is no text may be large, and is not searched.
+  if (!why_not_text(text).empty() || text.find(kMark) == std::string_view::npos) return;
   for_comments(text, [&](const Comment& comment) {
     const std::string_view words = text.substr(comment.at, comment.end - comment.at);
     const std::optional<size_t> names = names_of(words);
