@@ -1,9 +1,12 @@
 """Workers by Dask: of this machine, of a scheduler that is there, or of a queue that people have."""
 from __future__ import annotations
 
+import concurrent.futures
 import contextlib
+import hashlib
 import json
-from typing import Any, Iterator
+import warnings
+from typing import Any, Callable, Iterator
 
 from ._farm_job import FarmError
 
@@ -11,6 +14,11 @@ from ._farm_job import FarmError
 QUEUES = {"slurm": ("dask_jobqueue", "SLURMCluster", "dask-jobqueue"), "pbs": ("dask_jobqueue", "PBSCluster", "dask-jobqueue"),
           "lsf": ("dask_jobqueue", "LSFCluster", "dask-jobqueue"), "sge": ("dask_jobqueue", "SGECluster", "dask-jobqueue"),
           "kubernetes": ("dask_kubernetes.operator", "KubeCluster", "dask-kubernetes")}
+
+# What a scheduler holds of one file.
+MOST_BYTES = 1 << 30
+# So often is handed out what somebody kills: the system, perhaps, where memory is short.
+ATTEMPTS = 3
 
 
 def distributed_module() -> Any:
@@ -65,10 +73,38 @@ def client_of(scheduler: str, cluster: str, options: str, workers: int) -> Itera
         yield client
 
 
-def send_to_all(client: Any, things: list[bytes]) -> list[Any]:
-    """Futures of them, which all workers have: the only one that had them may be lost. Waits for a first worker, which may be
-    in a queue."""
-    if not things:
-        return []
-    client.wait_for_workers(1)
-    return client.scatter(things, hash=True, broadcast=True)
+def give(client: Any, thing: bytes) -> Any:
+    """A future of it, for workers. The scheduler holds it and gives it again where the only worker that had it is lost."""
+    if len(thing) > MOST_BYTES:
+        raise FarmError(f"a file of {len(thing) >> 20} MiB is too large to travel: put it where all workers see it, and use --shared", 2)
+    with warnings.catch_warnings():
+        # Dask would have large things scattered, which are lost with their workers.
+        warnings.simplefilter("ignore")
+        return client.submit(bytes, thing, key="whit-" + hashlib.sha256(thing).hexdigest(), priority=1)
+
+
+def results_of(client: Any, count: int, submit: Callable[[int, int], Any]) -> Iterator[tuple[int, Any]]:
+    """What comes of so many calls as they end, each with its number. `submit(number, attempt)` hands one out and returns its
+    future. One that is lost, or whose program somebody killed, is handed out again; the first that fails ends all."""
+    attempts = [1] * count
+    numbers = {submit(n, 1): n for n in range(count)}
+    ended = distributed_module().as_completed(numbers)
+    for future in ended:
+        number = numbers.pop(future)
+        try:
+            # A result that was lost with its worker since then is waited for.
+            result = future.result()
+        except (FarmError, concurrent.futures.CancelledError) as e:
+            if (isinstance(e, FarmError) and e.code >= 0) or attempts[number] == ATTEMPTS:
+                client.cancel(list(numbers))
+                raise e if isinstance(e, FarmError) else FarmError("the workers lost it again and again") from e
+            attempts[number] += 1
+            again = submit(number, attempts[number])
+            numbers[again] = number
+            ended.add(again)
+            continue
+        except BaseException:
+            client.cancel(list(numbers))
+            raise
+        future.release()
+        yield number, result

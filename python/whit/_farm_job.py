@@ -51,7 +51,7 @@ class Running:
         """Its standard output, and what it said beside; FarmError with its words where it fails."""
         out, said = self.process.communicate()
         if self.process.returncode != 0:
-            raise FarmError(said.strip() or f"whit ended with {self.process.returncode}", self.process.returncode)
+            raise FarmError(said.strip() or _ending(self.process.returncode), self.process.returncode)
         return out, said.strip()
 
     def kill(self) -> None:
@@ -69,6 +69,11 @@ class Running:
 def run(arguments: list[str], folder: str | None = None) -> str:
     """Standard output of the program; FarmError with its words where it fails."""
     return Running(arguments, folder).wait()[0]
+
+
+def _ending(code: int) -> str:
+    """How a program ended that said nothing."""
+    return f"whit was ended by {signal.Signals(-code).name}" if code < 0 else f"whit ended with {code}"
 
 
 def _end_with_parent() -> None:

@@ -114,7 +114,7 @@ class Shares:
         self._folder, self._here = folder, here
         by_digest = {f.digest: f for f in job.files}
         self._digests = sorted(by_digest)
-        self._sent = clusters.send_to_all(client, [job.read(by_digest[d]) for d in self._digests])
+        self._given = [clusters.give(client, job.read(by_digest[d])) for d in self._digests]
         self._cost = ShareCost()
         os.makedirs(folder, exist_ok=True)
 
@@ -122,27 +122,21 @@ class Shares:
         """All of a pass; `give` is told of parts as they come, `progress` of the share of it that there is."""
         number, start = said["pass"], time.monotonic()
         count = count_of_shares(said["samples"], said["tiles"], self._workers, self._cost)
-        of_pass = said["file"] if self._here else clusters.send_to_all(self._client, [_bytes_of(said["file"])])[0]
-        futures = {}
-        for k in range(count):
-            part = os.path.join(self._folder, f"{number}-{k + 1}.part")
-            futures[self._client.submit(timed_share, self._job, of_pass, f"{k + 1}/{count}", self._threads,
-                                        part if self._here else "", self._digests, *self._sent,
-                                        key=f"share-{number}-{k}-{os.getpid()}", pure=False)] = part
+        of_pass = said["file"] if self._here else clusters.give(self._client, _bytes_of(said["file"]))
+        parts = [os.path.join(self._folder, f"{number}-{k + 1}.part") for k in range(count)]
+
+        def submit(k: int, attempt: int) -> Any:
+            return self._client.submit(timed_share, self._job, of_pass, f"{k + 1}/{count}", self._threads,
+                                       parts[k] if self._here else "", self._digests, *self._given,
+                                       key=f"share-{number}-{k}-{attempt}-{os.getpid()}", pure=False)
+
         done = Pass(said["samples"], said["error"])
         rendering = 0.0
-        for future in clusters.distributed_module().as_completed(futures):
-            if future.status in ("error", "cancelled"):
-                problem = future.exception() if future.status == "error" else FarmError("the shares were cancelled")
-                self._client.cancel(list(futures))
-                raise problem
-            # One that was lost with its worker since then is waited for.
-            state, seconds, rendered = future.result()
+        for k, (state, seconds, rendered) in clusters.results_of(self._client, count, submit):
             if state:
-                with open(futures[future], "wb") as f:
+                with open(parts[k], "wb") as f:
                     f.write(state)
-            future.release()
-            give(futures[future])
+            give(parts[k])
             done.share_seconds.append(seconds)
             rendering += rendered
             progress(len(done.share_seconds) / count)

@@ -48,34 +48,25 @@ def timed_part(job: Job, part: Part, threads: int, keep: str, digests: Sequence[
     return render_part(job, part, threads, dict(zip(digests, contents)), keep), time.monotonic() - start
 
 
-def submit_all(client: Any, job: Job, parts: Sequence[Part], threads: int, files: Sequence[str]) -> dict[Any, int]:
-    """A future for every part, with its number: the first ones are the first to be rendered. `files`: where workers put
-    parts; none where they do not see this machine's folders."""
-    digests = sorted({f.digest for f in job.files})
-    by_digest = {f.digest: f for f in job.files}
-    sent = clusters.send_to_all(client, [job.read(by_digest[d]) for d in digests])
-    keep = files or [""] * len(parts)
-    return {client.submit(timed_part, job, part, threads, keep[i], digests, *sent, key=f"part-{i}-{os.getpid()}", priority=-i,
-                          pure=False): i for i, part in enumerate(parts)}
-
-
-def collect(client: Any, futures: dict[Any, int], files: Sequence[str], parts: Sequence[Part],
+def collect(client: Any, job: Job, parts: Sequence[Part], threads: int, files: Sequence[str], here: bool,
             progress: Callable[[float], None] | None, preview: Preview) -> list[float]:
-    """Writes parts that come as bytes to their files; the seconds of each. The first that fails ends it."""
+    """Has all parts rendered, the first ones first, each to its file; the seconds that each took. `here`: workers see these
+    files; elsewhere parts come as bytes."""
+    by_digest = {f.digest: f for f in job.files}
+    digests = sorted(by_digest)
+    given = [clusters.give(client, job.read(by_digest[d])) for d in digests]
+
+    def submit(number: int, attempt: int) -> Any:
+        return client.submit(timed_part, job, parts[number], threads, files[number] if here else "", digests, *given,
+                             key=f"part-{number}-{attempt}-{os.getpid()}", priority=-number, pure=False)
+
     seconds = [0.0] * len(parts)
     work, done = sum(p.work() for p in parts), 0
-    for future in clusters.distributed_module().as_completed(futures):
-        number = futures[future]
-        if future.status in ("error", "cancelled"):
-            problem = future.exception() if future.status == "error" else FarmError("the parts were cancelled")
-            client.cancel(list(futures))
-            raise problem
-        # One that was lost with its worker since then is waited for.
-        state, seconds[number] = future.result()
+    for number, (state, took) in clusters.results_of(client, len(parts), submit):
+        seconds[number] = took
         if state:
             with open(files[number], "wb") as f:
                 f.write(state)
-        future.release()
         preview.add(files[number])
         done += parts[number].work()
         if progress:
@@ -118,8 +109,7 @@ def render(scene: str, outfile: str = "", *, flags: Sequence[str] = (), workers:
         with clusters.client_of(scheduler, cluster, cluster_options, workers) as client, Preview(
                 job, display_server, warn) as preview:
             started = time.monotonic()
-            futures = submit_all(client, job, parts, threads, files if is_here else [])
-            seconds = collect(client, futures, files, parts, progress, preview)
+            seconds = collect(client, job, parts, threads, files, is_here, progress, preview)
             rendered = time.monotonic()
         preview.note(merge(job, files, outfile, preview.end()))
         merged = time.monotonic()
@@ -225,7 +215,7 @@ def main(words: Sequence[str] | None = None) -> int:
         return run_command(args, flags)
     except FarmError as e:
         print(f"whit-farm: {e}", file=sys.stderr)
-        return e.code
+        return e.code if e.code > 0 else 4
     except OSError as e:
         print(f"whit-farm: {e}", file=sys.stderr)
         return 4

@@ -58,7 +58,8 @@ class Farm(unittest.TestCase):
 
         def progress(share):
             if not killed and share > 0.05:
-                mine = [p for p in _processes_with("spawn_main") if _descends_from(p, os.getpid())]
+                # A program that a worker is about to start still has the worker's name, and is no child of this process.
+                mine = [p for p in _processes_with("spawn_main") if _parent_of(p) == os.getpid()]
                 for pid in mine[-2:]:
                     os.kill(pid, signal.SIGKILL)
                     killed.append(pid)
@@ -69,6 +70,30 @@ class Farm(unittest.TestCase):
         self.assertGreater(len(report.parts), 8)
         self.assertEqual(len(report.part_seconds), len(report.parts))
         self.expect_the_same()
+
+    def test_renders_that_are_killed_run_again(self):
+        # The system does that where memory is short. The workers stay.
+        flags = ["--spp", "64"]
+        self.whole(*flags)
+        killed = []
+
+        def progress(share):
+            for pid in [] if killed else _processes_with("--sample-range"):
+                if _descends_from(pid, os.getpid()):
+                    os.kill(pid, signal.SIGKILL)
+                    killed.append(pid)
+
+        farm.render(self.path("scene.pbrt"), self.path("farm.exr"), flags=flags, workers=2, model=TimeModel(0.01, 0.2),
+                    progress=progress)
+        self.assertGreater(len(killed), 0)
+        self.expect_the_same()
+
+    def test_renders_that_are_killed_each_time_end_it(self):
+        self.write("whit", '#!/bin/bash\n[[ " $* " == *" --sample-range "* ]] && kill -KILL $$\nexec "%s" "$@"\n' % package.WHIT)
+        os.chmod(self.path("whit"), 0o755)
+        os.environ["WHIT"] = self.path("whit")
+        with self.assertRaisesRegex(farm.FarmError, "ended by SIGKILL"):
+            farm.render(self.path("scene.pbrt"), self.path("farm.exr"), workers=1, model=MODEL)
 
     def test_the_command(self):
         self.whole("--spp", "8", "--seed", "5")
@@ -116,7 +141,7 @@ class Farm(unittest.TestCase):
 
         def progress(share):
             if not killed and len(os.listdir(self.path("parts"))) and share > 0.1:
-                mine = [p for p in _processes_with("spawn_main") if _descends_from(p, os.getpid())]
+                mine = [p for p in _processes_with("spawn_main") if _parent_of(p) == os.getpid()]
                 os.kill(mine[-1], signal.SIGKILL)
                 killed.append(mine[-1])
 
@@ -238,15 +263,20 @@ def _processes_with(word):
     return sorted(found)
 
 
-def _descends_from(pid, ancestor):
+def _parent_of(pid):
+    """None where the process has ended."""
     try:
-        while pid > 1:
-            with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as f:
-                pid = int(f.read().rpartition(")")[2].split()[1])
-            if pid == ancestor:
-                return True
+        with open(f"/proc/{pid}/stat", encoding="ascii", errors="replace") as f:
+            return int(f.read().rpartition(")")[2].split()[1])
     except OSError:
-        pass  # it has ended
+        return None
+
+
+def _descends_from(pid, ancestor):
+    while pid and pid > 1:
+        pid = _parent_of(pid)
+        if pid == ancestor:
+            return True
     return False
 
 
