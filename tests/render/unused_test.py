@@ -16,6 +16,11 @@ ROOT = os.path.normpath(os.path.join(os.path.dirname(os.path.abspath(__file__)),
 FILES, MATERIALS = 20, 10000
 
 
+def rendering(measured):
+    """What rendering took, of what Unused.render() returns."""
+    return measured[1] - measured[2]
+
+
 @unittest.skipUnless(WHIT, "the program is not built")
 class Unused(unittest.TestCase):
     def setUp(self):
@@ -58,10 +63,12 @@ class Unused(unittest.TestCase):
             return f.read(), int(peak[1]), int(parsed[1])
 
     def test_it_costs_its_parsing(self):
-        alone, alone_peak, alone_parsed = self.render(self.scene, "alone")
         marker = "WorldBegin\n"
         self.assertIn(marker, self.scene)
-        among, among_peak, among_parsed = self.render(self.scene.replace(marker, marker + self.unused(), 1), "among")
+        scene_among = self.scene.replace(marker, marker + self.unused(), 1)
+        # Threads that meet by chance take a MiB more: the least of three is what it costs.
+        alone, alone_peak, alone_parsed = min((self.render(self.scene, "alone") for _ in range(3)), key=rendering)
+        among, among_peak, among_parsed = min((self.render(scene_among, "among") for _ in range(3)), key=rendering)
         self.assertEqual(alone, among)
         if not SANITIZED:
             # Two MiB for rounding: of whole ones each difference is off by up to one.
