@@ -314,7 +314,7 @@ def mixture(folder):
     folder.write("m.ply", *ply_parts(700, "x y z nx ny nz"))
     folder.write("sky.pfm", pfm(4096, 2048))
     folder.write("t.png", png(4096, 4096))
-    return scene(shown(["t.png"]) + 'Shape "plymesh" "string filename" "m.ply"\n' + hair(30000), (3000, 3000),
+    return scene(shown(["t.png"]) + 'Shape "plymesh" "string filename" "m.ply"\n' + hair(30000), (4500, 4500),
                  light='LightSource "infinite" "string mapname" "sky.pfm"\n')
 
 
