@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <isa-l/crc64.h>
 
+#include <algorithm>
+#include <cstring>
+
 #include "core/base/mapped_file.h"
 
 namespace whit {
@@ -18,5 +21,10 @@ std::optional<uint64_t> file_checksum(const std::string& path) {
 }
 
 std::string checksum_text(uint64_t sum) { return fmt::format("{:016x}", sum); }
+
+SummedBytes::SummedBytes(std::string_view all) : bytes(all) {
+  if (all.size() >= sizeof sum) std::memcpy(&sum, all.data() + all.size() - sizeof sum, sizeof sum);
+  bytes.remove_suffix(std::min(all.size(), sizeof sum));
+}
 
 }  // namespace whit

@@ -18,4 +18,13 @@ std::optional<uint64_t> file_checksum(const std::string& path);
 /// As 16 hexadecimal digits.
 std::string checksum_text(uint64_t sum);
 
+/// Bytes that end in their checksum.
+struct SummedBytes {
+  explicit SummedBytes(std::string_view all);
+  bool are_whole() const { return checksum(bytes) == sum; }
+
+  std::string_view bytes;  ///< Without it.
+  uint64_t sum = 0;
+};
+
 }  // namespace whit

@@ -120,6 +120,8 @@ struct FilmRender::Impl {
   /// What is to be added to each unit. Units that have as many samples already get none.
   void begin_pass(std::span<const uint32_t> want, std::string pass_note = {});
   void render_task(size_t task);
+  /// Makes room for the blocks of what a pass adds, before the first of it.
+  void begin_blocks(size_t unit);
 
   /// The samples that some of a task's units want: from the first on that one lacks, up to the last.
   std::pair<uint32_t, uint32_t> begin_task(size_t task);

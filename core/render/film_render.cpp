@@ -122,12 +122,16 @@ void FilmRender::Impl::render_task(size_t task) {
   report_progress();
 }
 
+void FilmRender::Impl::begin_blocks(size_t unit) {
+  if (pass[unit].doubled && !std::exchange(pass[unit].begun, uint8_t{1})) sums[unit].halve_blocks();
+}
+
 std::pair<uint32_t, uint32_t> FilmRender::Impl::begin_task(size_t task) {
   const std::lock_guard lock(task_locks[task]);
   uint32_t from = UINT32_MAX, to = 0;
   each_unit(task, [&](size_t u) {
     if (have[u] == pass[u].until) return;
-    if (pass[u].doubled && !std::exchange(pass[u].begun, uint8_t{1})) sums[u].halve_blocks();
+    begin_blocks(u);
     from = std::min(from, have[u]), to = std::max(to, pass[u].until);
   });
   return {from, to};

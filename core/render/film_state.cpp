@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "core/render/film_impl.h"
 
@@ -176,7 +175,7 @@ bool FilmRender::Impl::add_share(ByteReader& in) {
   each_state(in, [&](size_t u, const UnitState& s) {
     if (s.base != have[u] || s.have != pass[u].until || s.have == s.base || !s.pass.is_like(pass[u])) in.fail();
     if (!in.ok()) return;
-    if (pass[u].doubled && !std::exchange(pass[u].begun, uint8_t{1})) sums[u].halve_blocks();
+    begin_blocks(u);
     have[u] = s.have;
     sums[u].merge(in);
     if (aovs.any()) aov_tiles[u].merge(in, things);

@@ -1,7 +1,6 @@
 #include "core/session/checkpoint_file.h"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
 #include "core/image/atomic_file.h"
@@ -11,7 +10,6 @@ namespace whit {
 namespace {
 
 constexpr std::string_view kMagic = "whit checkpoint\n";
-constexpr size_t kSum = sizeof(uint64_t);
 
 /// Writes in pieces of some size, and sums up what it wrote.
 class SummedFile {
@@ -82,18 +80,15 @@ void CheckpointHead::restore(ByteReader& in) {
 }
 
 CheckpointFile::CheckpointFile(const std::string& path) : file(path) {
-  std::string_view bytes = file.bytes();
   if (!(problem = file.error()).empty()) return;
   if (!is_checkpoint()) {
     problem = "it is no checkpoint";
     return;
   }
-  uint64_t sum = 0;
-  if (bytes.size() >= kMagic.size() + kSum) std::memcpy(&sum, bytes.data() + bytes.size() - kSum, kSum);
-  bytes.remove_suffix(std::min(bytes.size(), kSum));
-  ByteReader in(bytes);
+  const SummedBytes summed(file.bytes());
+  ByteReader in(summed.bytes);
   head.restore(in);
-  if (!in.ok() || checksum(bytes) != sum) problem = "it is damaged: its checksum is wrong";
+  if (!in.ok() || !summed.are_whole()) problem = "it is damaged: its checksum is wrong";
   state = in.rest();
 }
 

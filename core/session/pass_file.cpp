@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <span>
 #include <utility>
 
@@ -17,7 +15,6 @@ namespace whit {
 namespace {
 
 constexpr std::string_view kMagic = "whit pass\n";
-constexpr size_t kSum = sizeof(uint64_t);
 constexpr const char *kPass = "the pass", *kShare = "the share";
 constexpr uint32_t kMostShares = 1u << 20;
 
@@ -37,22 +34,19 @@ std::optional<PassShare> share_of_text(std::string_view text) {
 }
 
 PassFile::PassFile(const std::string& path) : file(path) {
-  std::string_view bytes = file.bytes();
   if (!(problem = file.error()).empty()) return;
-  if (!bytes.starts_with(kMagic)) {
+  if (!file.bytes().starts_with(kMagic)) {
     problem = "it is no pass of a render";
     return;
   }
-  uint64_t sum = 0;
-  if (bytes.size() >= kMagic.size() + kSum) std::memcpy(&sum, bytes.data() + bytes.size() - kSum, kSum);
-  bytes.remove_suffix(std::min(bytes.size(), kSum));
-  ByteReader in(bytes);
+  const SummedBytes summed(file.bytes());
+  ByteReader in(summed.bytes);
   std::string magic(kMagic.size(), ' ');
   in.numbers(std::span(magic));
   identity.restore(in);
   in.value<uint32_t>();
-  if (!in.ok() || checksum(bytes) != sum) problem = "it is damaged: its checksum is wrong";
-  pass = in.rest(), id = checksum_text(sum);
+  if (!in.ok() || !summed.are_whole()) problem = "it is damaged: its checksum is wrong";
+  pass = in.rest(), id = checksum_text(summed.sum);
 }
 
 std::string write_pass(const std::string& path, const RenderIdentity& identity, uint32_t number,

@@ -8,7 +8,7 @@ import json
 import warnings
 from typing import Any, Callable, Iterator
 
-from ._farm_job import FarmError
+from ._farm_job import FarmError, Job
 
 # The classes of dask-jobqueue and dask-kubernetes, and what to install for each.
 QUEUES = {"slurm": ("dask_jobqueue", "SLURMCluster", "dask-jobqueue"), "pbs": ("dask_jobqueue", "PBSCluster", "dask-jobqueue"),
@@ -81,6 +81,13 @@ def give(client: Any, thing: bytes) -> Any:
         # Dask would have large things scattered, which are lost with their workers.
         warnings.simplefilter("ignore")
         return client.submit(bytes, thing, key="whit-" + hashlib.sha256(thing).hexdigest(), priority=1)
+
+
+def give_files(client: Any, job: Job) -> tuple[list[str], list[Any]]:
+    """What of a job has to travel: the hashes of its files, and their futures."""
+    by_digest = {f.digest: f for f in job.files}
+    digests = sorted(by_digest)
+    return digests, [give(client, job.read(by_digest[d])) for d in digests]
 
 
 def results_of(client: Any, count: int, submit: Callable[[int, int], Any]) -> Iterator[tuple[int, Any]]:

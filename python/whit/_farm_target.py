@@ -112,9 +112,7 @@ class Shares:
     def __init__(self, client: Any, job: Job, workers: int, threads: int, folder: str, here: bool) -> None:
         self._client, self._job, self._workers, self._threads = client, job, workers, threads
         self._folder, self._here = folder, here
-        by_digest = {f.digest: f for f in job.files}
-        self._digests = sorted(by_digest)
-        self._given = [clusters.give(client, job.read(by_digest[d])) for d in self._digests]
+        self._digests, self._given = clusters.give_files(client, job)
         self._cost = ShareCost()
         os.makedirs(folder, exist_ok=True)
 

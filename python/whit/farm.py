@@ -52,9 +52,7 @@ def collect(client: Any, job: Job, parts: Sequence[Part], threads: int, files: S
             progress: Callable[[float], None] | None, preview: Preview) -> list[float]:
     """Has all parts rendered, the first ones first, each to its file; the seconds that each took. `here`: workers see these
     files; elsewhere parts come as bytes."""
-    by_digest = {f.digest: f for f in job.files}
-    digests = sorted(by_digest)
-    given = [clusters.give(client, job.read(by_digest[d])) for d in digests]
+    digests, given = clusters.give_files(client, job)
 
     def submit(number: int, attempt: int) -> Any:
         return client.submit(timed_part, job, parts[number], threads, files[number] if here else "", digests, *given,

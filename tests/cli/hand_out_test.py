@@ -7,33 +7,15 @@ import subprocess
 import tempfile
 import unittest
 
+from parts_scene import GAUSSIAN, LAYERS, LOOK, WORLD
+
 WHIT = os.environ.get("WHIT", "")
 
-# A lamp with soft shadows, glass, two things of one name; 45 x 31 pixels: no multiple of a tile.
+# 45 x 31 pixels: no multiple of a tile.
 SCENE = """Film "image" "integer xresolution" [45] "integer yresolution" [31] "string filename" "picture.exr"
-LookAt 0 2 -6  0 0.5 0  0 1 0
-Camera "perspective" "float fov" [45]
-Sampler "%(sampler)s" "integer pixelsamples" [16]
+""" + LOOK + """Sampler "%(sampler)s" "integer pixelsamples" [16]
 %(options)s
-WorldBegin
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [20 18 15] "string lightgroup" "lamp"
-  Translate 1 4 -2
-  Rotate 90 1 0 0
-  Shape "disk" "float radius" [0.7]
-AttributeEnd
-Material "matte" "rgb Kd" [0.5 0.6 0.7]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-5 0 -5 5 0 -5 5 0 5 -5 0 5]
-Translate 0 1 0
-Material "glass"
-Shape "sphere"
-Translate 2 0 1
-Material "plastic"
-Shape "sphere"
-WorldEnd
-"""
-GAUSSIAN = 'PixelFilter "gaussian" "float xwidth" [2] "float ywidth" [2]'
-LAYERS = ["--aov", "albedo,N,Z,shape,material,variance,samples,lightgroups"]
+""" + WORLD
 
 
 @unittest.skipUnless(WHIT, "the program is not built")

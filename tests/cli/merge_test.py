@@ -10,36 +10,17 @@ import tempfile
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "python"))
+from parts_scene import GAUSSIAN, LAYERS, LOOK, WORLD  # noqa: E402
 from viewer import Viewer  # noqa: E402
 
 WHIT = os.environ.get("WHIT", "")
 
-# Shadows of a lamp, glass, two things of one name, a filter as is wanted; 41 x 27 pixels: no multiple of a tile.
+# With a filter as is wanted; 41 x 27 pixels: no multiple of a tile.
 SCENE = """Film "image" "integer xresolution" [41] "integer yresolution" [27] "string filename" "picture.exr"
-LookAt 0 2 -6  0 0.5 0  0 1 0
-Camera "perspective" "float fov" [45]
-Sampler "%(sampler)s" "integer pixelsamples" [%(samples)d]
+""" + LOOK + """Sampler "%(sampler)s" "integer pixelsamples" [%(samples)d]
 %(options)s
-WorldBegin
-AttributeBegin
-  AreaLightSource "diffuse" "rgb L" [20 18 15] "string lightgroup" "lamp"
-  Translate 1 4 -2
-  Rotate 90 1 0 0
-  Shape "disk" "float radius" [0.7]
-AttributeEnd
-Material "matte" "rgb Kd" [0.5 0.6 0.7]
-Shape "trianglemesh" "integer indices" [0 1 2 0 2 3] "point P" [-5 0 -5 5 0 -5 5 0 5 -5 0 5]
-Translate 0 1 0
-Material "glass"
-Shape "sphere"
-Translate 2 0 1
-Material "plastic"
-Shape "sphere"
-WorldEnd
-"""
-GAUSSIAN = 'PixelFilter "gaussian" "float xwidth" [2] "float ywidth" [2]'
+""" + WORLD
 SINC = 'PixelFilter "sinc" "float xwidth" [3] "float ywidth" [3]'  # with negative weights
-LAYERS = ["--aov", "albedo,N,Z,shape,material,variance,samples,lightgroups"]
 
 
 @unittest.skipUnless(WHIT, "the program is not built")
@@ -181,15 +162,19 @@ class Merge(unittest.TestCase):
                 self.assertRegex(self.merge(*parts, "--outfile", "none.exr", code=code), words)
                 self.assertFalse(os.path.exists(self.path("none.exr")))
 
-    def test_parts_that_have_not_ended(self):
+    def leave_unfinished(self, *flags):
+        """The checkpoint "unfinished" of a render that was killed."""
         process = subprocess.Popen([WHIT, "scene.pbrt", "--spp", "1000000", "--checkpoint", "unfinished", "--every", "0.05s",
-                                    "--display", "none", "--quiet"], cwd=self.folder)
+                                    *flags, "--quiet"], cwd=self.folder)
         try:
             while not os.path.exists(self.path("unfinished")):
                 self.assertIsNone(process.poll())
         finally:
             process.kill()
             process.wait()
+
+    def test_parts_that_have_not_ended(self):
+        self.leave_unfinished("--display", "none")
         self.assertIn('"unfinished" is of a render that has not ended; its command with --resume unfinished goes on with it',
                       self.merge("unfinished", code=2))
 
@@ -242,14 +227,7 @@ class Merge(unittest.TestCase):
         self.assertTrue(self.same_files("merged.exr", "whole.exr"))
 
     def test_a_part_that_has_not_ended_so_far(self):
-        process = subprocess.Popen([WHIT, "scene.pbrt", "--spp", "1000000", "--checkpoint", "unfinished", "--every", "0.05s",
-                                    "--outfile", "none", "--quiet"], cwd=self.folder)
-        try:
-            while not os.path.exists(self.path("unfinished")):
-                self.assertIsNone(process.poll())
-        finally:
-            process.kill()
-            process.wait()
+        self.leave_unfinished("--outfile", "none")
         self.merge("unfinished", "--so-far", "--outfile", "so-far.pfm")
         self.assertGreater(max(self.pixels("so-far.pfm")), 0)
 
